@@ -188,7 +188,7 @@ check-long:  ## what make check leaves out: the tests with the label long, the o
 
 check-all: check check-long  ## make check, then make check-long: every test, every engine
 
-cluster-check: $(BUILD)/build.ninja  ## sweeps by the scripts of cluster/: GNU parallel, and a real Slurm that is started here (minutes)
+cluster-check: $(BUILD)/build.ninja  ## sweeps by the scripts of examples/cluster/: GNU parallel, and a real Slurm that is started here (minutes)
 	@$(alone) cmake --build $(BUILD) --target impact-damper || exit; \
 	for check in parallel slurm; do \
 	  tests/cluster/$$check.py $(BUILD)/src/impact-damper . $(BUILD)/cluster-check/$$check || exit; \
@@ -212,7 +212,7 @@ same-bits:  ## the same bytes from other compilers, processors, WebAssembly and 
 	@$(alone) $(with_tests) cmake --build $(BUILD) --target same-bits
 
 wasm:  ## the library for browsers and node, as an npm package, and pages to play with a damper and to try one's own: build/wasm/
-	@$(alone) mkdir -p $(BUILD) && cmake -S . -B $(BUILD)/wasm -G Ninja --toolchain toolchains/wasm.cmake -DCMAKE_BUILD_TYPE=MinSizeRel \
+	@$(alone) mkdir -p $(BUILD) && cmake -S . -B $(BUILD)/wasm -G Ninja --toolchain src/toolchains/wasm.cmake -DCMAKE_BUILD_TYPE=MinSizeRel \
 	  >$(BUILD)/wasm.log || { cat $(BUILD)/wasm.log; echo "make $@: make deps-wasm installs what it needs" >&2; exit 1; }; \
 	cmake --build $(BUILD)/wasm --target pages && echo "The package: $$(ls $(BUILD)/wasm/impact-damper-*.tgz), the pages: $(BUILD)/wasm/damper.html and own.html"
 

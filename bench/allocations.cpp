@@ -35,8 +35,7 @@ namespace impact_damper::bench {
 namespace {
 
 template <class Engine>
-Allocations count_with(const std::string& name, Engine&& engine) {
-  const Scene decay{.x0 = 6, .until_amplitude = 0.03};
+Allocations count_with(const std::string& name, const Checked& decay, Engine&& engine) {
   Allocations counted{.engine = name};
   QuietObserver quiet;
   const std::int64_t begin = calls;
@@ -55,9 +54,11 @@ Allocations count_with(const std::string& name, Engine&& engine) {
 }  // namespace
 
 std::vector<Allocations> count_allocations() {
-  return {count_with("exact", [](const Scene& s, auto& observer) { run_exact<double>(s, {}, observer); }),
-          count_with("restitution",
-                     [](const Scene& s, auto& observer) { run_restitution<double>(s, {}, observer); })};
+  const Scene decay{.x0 = 6, .until_amplitude = 0.03};
+  return {count_with("exact", checked(decay, Exact{}),
+                     [](const Checked& run, auto& observer) { run_exact<double>(run, observer); }),
+          count_with("restitution", checked(decay, Restitution{}),
+                     [](const Checked& run, auto& observer) { run_restitution<double>(run, observer); })};
 }
 
 }  // namespace impact_damper::bench

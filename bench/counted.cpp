@@ -23,13 +23,14 @@ CountedRun count_with(const Scene& scene, Engine&& engine) {
 }  // namespace
 
 CountedRun count(const Scene& scene, const Exact& options) {
-  return count_with(scene,
-                    [&](const Scene& s, Recorder& recorder) { run_exact<Counted>(s, options, recorder); });
+  return count_with(
+      scene, [&](const Scene& s, Recorder& recorder) { run_exact<Counted>(checked(s, options), recorder); });
 }
 
 CountedRun count(const Scene& scene, const Restitution& options) {
-  return count_with(
-      scene, [&](const Scene& s, Recorder& recorder) { run_restitution<Counted>(s, options, recorder); });
+  return count_with(scene, [&](const Scene& s, Recorder& recorder) {
+    run_restitution<Counted>(checked(s, options), recorder);
+  });
 }
 
 }  // namespace impact_damper::bench

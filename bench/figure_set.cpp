@@ -2,10 +2,10 @@
 
 #include <map>
 
+#include "application/reproduction/catalogue.hpp"
+#include "application/reproduction/series.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/io/scene_file.hpp"
-#include "impact_damper/reproduction/catalogue.hpp"
-#include "impact_damper/reproduction/series.hpp"
 #include "impact_damper/simulate.hpp"
 
 namespace impact_damper::bench {

@@ -3,10 +3,10 @@
 #include <chrono>
 #include <functional>
 
+#include "application/sweeps/plan_file.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/parallel.hpp"
 #include "impact_damper/simulate.hpp"
-#include "impact_damper/sweeps/plan_file.hpp"
 
 namespace impact_damper::bench {
 namespace {

@@ -3,7 +3,7 @@
 # peer(NAME FILES LIBRARIES...): compiled apart, with warnings of foreign templates off.
 function(peer name files)
   add_library(bench_${name} OBJECT EXCLUDE_FROM_ALL ${files})
-  target_include_directories(bench_${name} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
+  target_include_directories(bench_${name} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/src/include)
   target_link_libraries(bench_${name} PRIVATE impact_damper_options ${ARGN})
   target_compile_options(bench_${name} PRIVATE -Wno-missing-field-initializers)
   target_sources(impact-damper-bench PRIVATE $<TARGET_OBJECTS:bench_${name}>)

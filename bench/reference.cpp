@@ -42,9 +42,9 @@ template <class Real>
 std::vector<double> amplitudes(const Scene& scene, const Exact& options) {
   Recorder recorder({.half_cycles = true}, scene.dampers.size());
   if (has_one_damper(scene)) {
-    run_exact<Real>(scene, options, recorder);
+    run_exact<Real>(checked(scene, options), recorder);
   } else {
-    run_exact_dampers<Real>(scene, options, recorder);
+    run_exact_dampers<Real>(checked(scene, options), recorder);
   }
   return amplitudes_of(recorder);
 }
@@ -54,9 +54,9 @@ std::vector<double> amplitudes(const Scene& scene, Restitution options) {
   options.accumulation_tolerance = 1e-12;
   Recorder recorder({.half_cycles = true}, scene.dampers.size());
   if (has_one_damper(scene)) {
-    run_restitution<Real>(scene, options, recorder);
+    run_restitution<Real>(checked(scene, options), recorder);
   } else {
-    run_restitution_dampers<Real>(scene, options, recorder);
+    run_restitution_dampers<Real>(checked(scene, options), recorder);
   }
   return amplitudes_of(recorder);
 }

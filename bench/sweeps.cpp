@@ -11,10 +11,10 @@ namespace impact_damper::bench {
 namespace {
 
 Outcome run(const Scene& scene, const Exact& options, QuietObserver& observer) {
-  return run_exact<double>(scene, options, observer);
+  return run_exact<double>(checked(scene, options), observer);
 }
 Outcome run(const Scene& scene, const Restitution& options, QuietObserver& observer) {
-  return run_restitution<double>(scene, options, observer);
+  return run_restitution<double>(checked(scene, options), observer);
 }
 
 template <class Options>
@@ -48,7 +48,7 @@ void add_sweeps(double most_impacts, const std::function<void(const std::string&
   for (double n = 100; n <= most_impacts; n *= 10) {
     Options options;
     options.budget.max_impacts = std::int64_t(n);
-    add(impacts, n, {.x0 = 6, .dampers = {{.restitution = 1}}}, options);
+    add(impacts, n, {.x0 = 6, .until_time = 1e12, .dampers = {{.restitution = 1}}}, options);
   }
   all.push_back(impacts);
 

@@ -29,11 +29,10 @@ struct LongestContact {
 int main() {
   impact_damper::Scene scene;  // the paper's: mass ratio 0.02, restitution 0.6, released at 6 clearances
   scene.until_amplitude = 0.1;
-  // simulate() rejects a scene that is not valid; run_exact() leaves that to its caller.
-  if (!impact_damper::problems_of(scene).empty()) return 1;
+  const auto run = impact_damper::checked(scene, impact_damper::Exact{});  // throws where simulate() does
 
   LongestContact observer;
-  const auto outcome = impact_damper::run_exact<double>(scene, impact_damper::Exact{}, observer);
+  const auto outcome = impact_damper::run_exact<double>(run, observer);
   std::printf("%d impacts until t = %.3f\n", observer.impacts, outcome.end_time);
   std::printf("the longest contact begins at t = %.3f and lasts %.6f\n", observer.begin, observer.longest);
 }

@@ -1,5 +1,5 @@
 // Several dampers by the component element method: against the engine of one damper, the restitution engine,
-// and a Taylor series in long double (compliant_dampers.hpp).
+// and the oracle (oracle/oracle.hpp).
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ double order(double coarse, double fine, double ratio = 2) {
 }
 
 // The mean over neighbouring steps: where in a step touch and release fall differs.
-Distance mean_distance(const Scene& scene, const Reference& reference, Cem options, double h, int runs) {
+Distance mean_distance(const Scene& scene, const Run& reference, Cem options, double h, int runs) {
   Distance mean;
   for (int i = 0; i < runs; ++i) {
     options.time_step = h * (1 + i / (2.0 * runs));
@@ -192,9 +192,9 @@ TEST_CASE("renumbering the dampers changes no bit but the numbers") {
 
 TEST_CASE("with located events several dampers converge to their Taylor series with second order") {
   for (const Scene& scene : {four, two_shaken}) {
-    const Reference reference = reference_of(scene);
-    CHECK(reference.most_in_contact == std::min(3, int(scene.dampers.size())));
-    REQUIRE(reference.impacts.size() > 10);
+    const Run reference = reference_of(scene);
+    CHECK(most_in_contact(*reference.contacts) == std::min(3, int(scene.dampers.size())));
+    REQUIRE(reference.impacts->time.size() > 10);
     const Distance coarse = mean_distance(scene, reference, {.locate = true}, 4e-4, 4),
                    fine = mean_distance(scene, reference, {.locate = true}, 1e-4, 4);
     for (const auto member : {&Distance::x, &Distance::y, &Distance::impacts, &Distance::losses})
@@ -207,7 +207,7 @@ TEST_CASE("with located events several dampers converge to their Taylor series w
 TEST_CASE("unlocated, or with the damper lagged, several dampers converge with first order") {
   for (Scene scene : {four, two_shaken}) {
     scene.until_time = 3;  // before the errors of first order decide who meets which wall next
-    const Reference reference = reference_of(scene);
+    const Run reference = reference_of(scene);
     for (const Cem& options :
          {Cem{}, Cem{.damper = Damper::lagged}, Cem{.damper = Damper::lagged, .locate = true}}) {
       const Distance coarse = mean_distance(scene, reference, options, 4e-4, 12),
@@ -237,7 +237,7 @@ TEST_CASE("the energy balance of several dampers closes with second order") {
 TEST_CASE("two rates lose nothing of the accuracy of small steps, and spare most of them") {
   for (Scene scene : {four, two_shaken}) {
     scene.until_time = 3;
-    const Reference reference = reference_of(scene);
+    const Run reference = reference_of(scene);
     for (const bool locate : {false, true}) {
       Cem options{.locate = locate};
       const Distance small = mean_distance(scene, reference, options, 1e-4, 8);

@@ -1,4 +1,4 @@
-#include "impact_damper/reproduction/claims.hpp"
+#include "application/reproduction/claims.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "application/reproduction/measure_numbers.hpp"
+#include "application/reproduction/measures.hpp"
+#include "application/reproduction/printed.hpp"
+#include "application/reproduction/words.hpp"
 #include "impact_damper/base/errors.hpp"
-#include "impact_damper/reproduction/measure_numbers.hpp"
-#include "impact_damper/reproduction/measures.hpp"
-#include "impact_damper/reproduction/printed.hpp"
-#include "impact_damper/reproduction/words.hpp"
 
 using namespace impact_damper;
 

@@ -1,5 +1,5 @@
 // Designs of several dampers, held against plain searches and runs.
-#include "impact_damper/sweeps/damper_set_design.hpp"
+#include "application/sweeps/damper_set_design.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "application/sweeps/sampling.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/simulate.hpp"
-#include "impact_damper/sweeps/sampling.hpp"
 
 using namespace impact_damper;
 

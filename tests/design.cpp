@@ -7,10 +7,10 @@
 #include <complex>
 #include <numbers>
 
+#include "application/report/findings.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/analysis/theory.hpp"
-#include "impact_damper/report/findings.hpp"
 #include "impact_damper/simulate.hpp"
 
 using namespace impact_damper;

@@ -1,4 +1,4 @@
-#include "impact_damper/report/drawings.hpp"
+#include "application/report/drawings.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "impact_damper/report/quantities.hpp"
+#include "application/report/quantities.hpp"
 
 using namespace impact_damper;
 

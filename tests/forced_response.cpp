@@ -1,6 +1,6 @@
 // The motions over the frequency of the force that a page shows, against closed forms, against runs that know
 // nothing of steady states, and against made-up amplitudes.
-#include "impact_damper/report/forced_response.hpp"
+#include "application/report/forced_response.hpp"
 
 #include <doctest/doctest.h>
 
@@ -153,8 +153,7 @@ TEST_CASE(
   const Scene scene = mast(0.0125, 1.01);
   const ForcedResponse response = response_of(scene, Restitution{});
   const std::vector<ResponsePoint>& points = response.points;
-  const auto follows = [&](const ResponsePoint& point, const SceneState& from,
-                           const ArrivedMotion& motion) {
+  const auto follows = [&](const ResponsePoint& point, const SceneState& from, const ArrivedMotion& motion) {
     Scene there = scene;
     there.force_frequency = point.frequency;
     const SteadyState steady = ForcedScene(there, Restitution{}).settle(from, response.rule);

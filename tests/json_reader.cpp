@@ -372,10 +372,9 @@ TEST_CASE("what is written reads back, on the lines that were asked for") {
           CHECK(column == std::vector<double>{1, 0.1 + 0.2});
         }).empty());
   for (const double value : {std::nan(""), double(INFINITY)}) {
-    JsonWriter astray("thing");
-    astray.open_object(Layout::lines);
-    CHECK_THROWS_WITH_AS(astray.field("x", value),
-                         doctest::Contains("the thing went astray: a number in its \"x\" is "),
-                         NumericalError);
+    JsonWriter writer("thing");
+    writer.open_object(Layout::lines);
+    CHECK_THROWS_WITH_AS(writer.field("x", value),
+                         doctest::Contains("a number in \"x\" of the thing is not finite: "), NumericalError);
   }
 }

@@ -1,4 +1,4 @@
-#include "impact_damper/reproduction/manifest.hpp"
+#include "application/reproduction/manifest.hpp"
 
 #include <doctest/doctest.h>
 

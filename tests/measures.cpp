@@ -1,4 +1,4 @@
-#include "impact_damper/reproduction/measures.hpp"
+#include "application/reproduction/measures.hpp"
 
 #include <doctest/doctest.h>
 #include <unistd.h>
@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "application/reproduction/measures_parts.hpp"
+#include "application/reproduction/scene_runs.hpp"
 #include "closed_forms.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/base/errors.hpp"
@@ -18,8 +20,6 @@
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/motion/wall.hpp"
-#include "impact_damper/reproduction/measures_parts.hpp"
-#include "impact_damper/reproduction/scene_runs.hpp"
 #include "impact_damper/simulate.hpp"
 
 using namespace impact_damper;

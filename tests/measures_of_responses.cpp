@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "impact_damper/reproduction/measures.hpp"
+#include "application/reproduction/measures.hpp"
 #include "impact_damper/simulate.hpp"
 
 using namespace impact_damper;

@@ -9,12 +9,12 @@
 #include <numbers>
 #include <optional>
 
+#include "application/reproduction/measures.hpp"
+#include "application/reproduction/measures_parts.hpp"
 #include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/run_file.hpp"
-#include "impact_damper/reproduction/measures.hpp"
-#include "impact_damper/reproduction/measures_parts.hpp"
 #include "impact_damper/simulate.hpp"
 
 using namespace impact_damper;

@@ -1,6 +1,6 @@
 // The recorded table of the claims' discriminating power (paper/power.json): complete, and right where it is
 // tried. `impact-damper verify --power` makes all of it, in minutes.
-#include "impact_damper/reproduction/power.hpp"
+#include "application/reproduction/power.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
-// Every number that a run with several dampers records, in each engine, against what the oracle for several
-// dampers finds, in quadruple precision and by no method of theirs (several/several_oracle.hpp).
+// Every number that a run with several dampers records, in each engine, against what the oracle finds, in
+// quadruple precision and by no method of theirs (oracle/oracle.hpp).
 // mutation/outputs.py sees to it that none is forgotten.
 #include <doctest/doctest.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <utility>
 
+#include "compare.hpp"
 #include "impact_damper/simulate.hpp"
 #include "same_run.hpp"
-#include "several_compare.hpp"
 
 using namespace impact_damper;
 using oracle::Walls;
@@ -38,33 +38,7 @@ Scene eventful(Walls walls) {
 
 Run simulated(const Scene& scene, const Engine& engine) {
   return simulate(scene, engine,
-                  {true, true, true, true, {{0, *scene.until_time, several::sample_count}}, {}});
-}
-
-// What the oracle finds, and what follows from it.
-Run expected(const Scene& scene, Walls walls) {
-  Run run = several::run_of_oracle(scene, several::Fault::none, walls);
-  const HalfCycles& rows = *run.half_cycles;
-  for (const double time : run.impacts->time) {
-    const auto row =
-        std::size_t(std::ranges::upper_bound(rows.zero_crossing, time) - rows.zero_crossing.begin());
-    const bool complete = row < rows.zero_crossing.size();
-    const double begin = row > 0 ? rows.zero_crossing[row - 1] : 0;
-    run.impacts->amplitude.push_back(complete ? std::optional(rows.amplitude[row]) : std::nullopt);
-    run.impacts->phase_deg.push_back(
-        complete && row > 0 ? std::optional(180 * (time - begin) / (rows.zero_crossing[row] - begin))
-                            : std::nullopt);
-  }
-  // The oracle knows a damper's losses as one sum.
-  for (std::size_t i = 0; i < scene.dampers.size(); ++i) {
-    DamperEnergy& its = run.energy->dampers[i];
-    its.contact_loss = its.impact_loss;
-    its.impact_loss = 0;
-    for (std::size_t n = 0; n < run.impacts->time.size(); ++n)
-      if (run.impacts->damper[n] == std::int32_t(i)) its.impact_loss += run.energy->impact_loss[n];
-    its.contact_loss -= its.impact_loss;
-  }
-  return run;
+                  {true, true, true, true, {{0, *scene.until_time, oracle::sample_count}}, {}});
 }
 
 void same_of_dampers(const Run& run, const Run& expected, double allowed) {
@@ -91,7 +65,7 @@ void same_of_dampers(const Run& run, const Run& expected, double allowed) {
 
 void check_against_oracle(Walls walls, const Engine& engine, double allowed) {
   const Scene scene = eventful(walls);
-  const Run run = simulated(scene, engine), its = expected(scene, walls);
+  const Run run = simulated(scene, engine), its = oracle::run_of_oracle(scene, walls);
   CHECK(run.engine == engine);
   same(run, its, allowed);
   same_of_dampers(run, its, allowed);
@@ -144,7 +118,7 @@ TEST_CASE("a damper's bounce-downs lose what was left after its last impact that
   }
   CHECK(count > 1);
   // The engine takes the limit of a chattering that the oracle follows farther.
-  const Contacts &contacts = *run.contacts, oracles = *expected(scene, Walls::rigid).contacts;
+  const Contacts &contacts = *run.contacts, oracles = *oracle::run_of_oracle(scene, Walls::rigid).contacts;
   same("contacts.begin", contacts.begin, oracles.begin, 1e-7);
   same("contacts.end", contacts.end, oracles.end, 1e-7);
   same("contacts.wall", contacts.wall, oracles.wall, 0);

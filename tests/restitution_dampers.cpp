@@ -1,5 +1,5 @@
 // Several dampers by the restitution engine: what must hold whatever their numbers. (Against an independent
-// simulation: several/.)
+// simulation: oracle/.)
 #include "impact_damper/engines/restitution_dampers.hpp"
 
 #include <doctest/doctest.h>

@@ -207,29 +207,30 @@ TEST_CASE("a section of a run as CSV has the columns of the run file, absent num
 
 // Units of two, so that products are exact; no two of them alike.
 TEST_CASE("in SI every column of the CSV is multiplied by its own unit, and its name says which") {
-  const SiUnits units{.length = 2, .time = 4, .velocity = 8, .mass = 16, .force = 32, .energy = 64};
+  // Length 2, time 1/4, velocity 8, mass 1, force 32, energy 64.
+  const Scales units{.mass = 1, .stiffness = 16, .length = 2000};
   Run run = full_run();
   CHECK(run_csv(run, units) ==
         "zero_crossing_s,peak_time_s,amplitude_m,impacts\n"
-        "6,0,12,3\n"
-        "18.4,12,11.8,0\n");
+        "0.375,0,12,3\n"
+        "1.15,0.75,11.8,0\n");
   run.half_cycles.reset();
   CHECK(run_csv(run, units) ==
         "time_s,wall,relative_velocity_m_per_s,phase_deg,amplitude_m,displacement_m\n"
-        "4,1,2.4000000000000004,,12,7\n"
-        "8,0,-8e-300,0.3333333333333333,11.8,-8\n"
-        "20,1,4e-323,,,0.6666666666666666\n");
+        "0.25,1,2.4000000000000004,,12,7\n"
+        "0.5,0,-8e-300,0.3333333333333333,11.8,-8\n"
+        "1.25,1,4e-323,,,0.6666666666666666\n");
   run.impacts.reset();
   CHECK(run_csv(run, units) ==
         "begin_s,end_s,wall\n"
-        "4,4.5,1\n"
-        "8,8,0\n");
+        "0.25,0.28125,1\n"
+        "0.5,0.5,0\n");
   run.contacts.reset();
   run.history->dampers[0].w = {3, -1};
   CHECK(run_csv(run, units) ==
         "time_s,x_m,v_m_per_s,y_m,w_m_per_s\n"
         "0,12,0,0,24\n"
-        "4,-0.0,-8,1,-8\n");
+        "0.25,-0.0,-8,1,-8\n");
 }
 
 TEST_CASE("a run that is read and written again has the same bytes, whatever its engine and sections") {
@@ -715,7 +716,6 @@ TEST_CASE("columns of dampers that are not those of the scene are rejected") {
 
 TEST_CASE("as CSV, columns of a damper have its number behind their names") {
   Run run = run_of_several();
-  const SiUnits units = si_units_of(mast);
   run.energy.reset();
   CHECK(run_csv(run) ==
         "zero_crossing,peak_time,amplitude,impacts,impacts_1,impacts_2\n1.5,0,6,3,1,2\n4.6,3,5.9,0,0,0\n");
@@ -726,8 +726,8 @@ TEST_CASE("as CSV, columns of a damper have its number behind their names") {
   CHECK(run_csv(run) == "begin,end,wall,damper\n1,1.125,1,2\n2,2,0,1\n");
   run.contacts.reset();
   CHECK(run_csv(run) == "time,x,v,y_1,w_1,y_2,w_2\n0,6,0,0.5,1,0,2\n1,-0.0,-1,0.75,-1,0.125,-0.0\n");
-  CHECK(run_csv(run, units)
-            .starts_with("time_s,x_m,v_m_per_s,y_1_m,w_1_m_per_s,y_2_m,w_2_m_per_s\n0,0.06,0,0.005,"));
+  CHECK(run_csv(run, mast).starts_with(
+      "time_s,x_m,v_m_per_s,y_1_m,w_1_m_per_s,y_2_m,w_2_m_per_s\n0,0.06,0,0.005,"));
 }
 
 TEST_CASE(

@@ -1,5 +1,5 @@
 // The catalogue, and the tables made from runs whose answer is known beforehand.
-#include "impact_damper/reproduction/series.hpp"
+#include "application/reproduction/series.hpp"
 
 #include <doctest/doctest.h>
 
@@ -13,12 +13,12 @@
 #include <set>
 #include <tuple>
 
+#include "application/sweeps/plan_file.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
-#include "impact_damper/sweeps/plan_file.hpp"
 
 using namespace impact_damper;
 

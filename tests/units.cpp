@@ -57,13 +57,13 @@ TEST_CASE("a scene in units becomes the dimensionless one that is worked out by 
 
 TEST_CASE("the scales are those of the primary system and the clearance") {
   const Scales scales = scales_of(mast());
-  CHECK(scales.time() == near(0.05));
-  CHECK(scales.frequency() == near(3.18309886183790672));  // 20 / (2 pi)
+  CHECK(scales.of(Dimension::time) == near(0.05));
+  CHECK(scales.of(Dimension::frequency) == near(3.18309886183790672));  // 20 / (2 pi)
   CHECK(scales.length == 10);
-  CHECK(scales.velocity() == near(200));
-  CHECK(scales.force() == near(160));
-  CHECK(scales.energy() == near(1.6));  // 16000 N/m (0.01 m)^2
-  CHECK(scales.damping() == near(1600));
+  CHECK(scales.of(Dimension::velocity) == near(200));
+  CHECK(scales.of(Dimension::force) == near(160));
+  CHECK(scales.of(Dimension::energy) == near(1.6));  // 16000 N/m (0.01 m)^2
+  CHECK(scales.of(Dimension::damping) == near(1600));
 }
 
 TEST_CASE("what is not said of a scene in units is at rest, undamped, unforced and has the usual walls") {
@@ -94,7 +94,7 @@ TEST_CASE("a motion in units obeys the equations with their units") {
   const Scales scales = scales_of(given);
   Record record;
   record.impacts = true;
-  record.history = {{0, 2 / scales.time(), 41}};
+  record.history = {{0, 2 / scales.of(Dimension::time), 41}};
   const Run run = simulate(dimensionless(given), Exact{}, record);
   REQUIRE(run.impacts->time.empty());
 
@@ -105,7 +105,7 @@ TEST_CASE("a motion in units obeys the equations with their units") {
   const double decay = c / (2 * m), omega_d = std::sqrt(k / m - decay * decay);
   const double a = -q, b = (-s * omega + a * decay) / omega_d;
   for (std::size_t i = 0; i < run.history->time.size(); ++i) {
-    const double t = run.history->time[i] * scales.time();
+    const double t = run.history->time[i] * scales.of(Dimension::time);
     const double x = s * std::sin(omega * t) + q * std::cos(omega * t) +
                      std::exp(-decay * t) * (a * std::cos(omega_d * t) + b * std::sin(omega_d * t));
     // Twelve digits of the largest, about 2 mm: both sides round.
@@ -140,23 +140,55 @@ TEST_CASE("no number in units that is allowed makes a scale of zero or infinity"
     for (const double stiffness : {1e-15, 1e15}) {
       for (const double length : {1e-15, 1e15}) {
         const Scales scales{mass, stiffness, length};
-        for (const double scale : {scales.time(), scales.frequency(), scales.velocity(), scales.force(),
-                                   scales.energy(), scales.damping()}) {
-          CHECK(std::isnormal(scale));
+        for (const Dimension dimension : all_of<Dimension>) {
+          CHECK(std::isnormal(scales.of(dimension)));
+          CHECK(std::isnormal(scales.in_si(dimension)));
         }
       }
     }
   }
 }
 
-TEST_CASE("what one unit is in SI is worked out by hand") {
-  const SiUnits units = si_units_of(scales_of(mast()));
-  CHECK(units.length == near(0.01));
-  CHECK(units.time == near(0.05));
-  CHECK(units.velocity == near(0.2));
-  CHECK(units.mass == near(40));
-  CHECK(units.force == near(160));
-  CHECK(units.energy == near(1.6));
+TEST_CASE("each unit has a name in a scene in units, without units, and as the end of a name in SI") {
+  std::string all;
+  for (const Dimension each : all_of<Dimension>)
+    all += std::string(name_of(each)) + ": " + std::string(unit_of(each, true)) + ", " +
+           std::string(unit_of(each, false)) + ", " + std::string(suffix_of(each)) + "\n";
+  CHECK(all ==
+        "ratio: , , \n"
+        "count: , , \n"
+        "length: mm, epsilon, _m\n"
+        "time: s, 1/Omega_n, _s\n"
+        "velocity: mm/s, epsilon Omega_n, _m_per_s\n"
+        "mass: kg, M, _kg\n"
+        "force: N, K epsilon, _N\n"
+        "energy: J, K epsilon^2, _J\n"
+        "power: W, K epsilon^2 Omega_n, _W\n"
+        "frequency: Hz, Omega_n, _Hz\n"
+        "rate: 1/s, Omega_n, _per_s\n"
+        "stiffness: N/m, K, _N_per_m\n"
+        "damping: N s/m, 2 sqrt(K M), _N_s_per_m\n");
+}
+
+TEST_CASE("what one unit is in engineers' units and in SI is worked out by hand") {
+  const Scales scales = scales_of(mast());
+  const auto is = [&](Dimension dimension, double in_units, double in_si) {
+    CHECK(scales.of(dimension) == near(in_units));
+    CHECK(scales.in_si(dimension) == near(in_si));
+  };
+  is(Dimension::ratio, 1, 1);
+  is(Dimension::count, 1, 1);
+  is(Dimension::length, 10, 0.01);
+  is(Dimension::time, 0.05, 0.05);
+  is(Dimension::velocity, 200, 0.2);
+  is(Dimension::mass, 40, 40);
+  is(Dimension::force, 160, 160);
+  is(Dimension::energy, 1.6, 1.6);
+  is(Dimension::power, 32, 32);
+  is(Dimension::frequency, 3.18309886183790672, 3.18309886183790672);  // 20 / (2 pi)
+  is(Dimension::rate, 20, 20);
+  is(Dimension::stiffness, 16000, 16000);
+  is(Dimension::damping, 1600, 1600);
 }
 
 TEST_CASE("a mass outside its cavity and a heavy one are cautioned about, and nothing else is") {

@@ -20,7 +20,7 @@ from pathlib import Path
 
 from values import VERDICTS, Mistake, Values, stem_of
 
-sys.path.append(str(Path(__file__).resolve().parents[2] / "wasm/page"))
+sys.path.append(str(Path(__file__).resolve().parents[2] / "src/wasm/page"))
 from pages import own_html  # noqa: E402
 
 # Mathematics in the words of claims, which are plain ASCII: what is set, and as which formula.
@@ -144,7 +144,7 @@ def made_from(values: Values, number: str, link=lambda words, file: words) -> st
 
 
 def damper_html(values: Values, number: str) -> str:
-    """The place for a damper to play with (wasm/page/start.js), beside figures of one motion and of its phases."""
+    """The place for a damper to play with (src/wasm/page/start.js), beside figures of one motion and of its phases."""
     figure = values.figures[number]
     if figure["table"] not in ("motion", "phase"):
         return ""
@@ -155,7 +155,7 @@ def damper_html(values: Values, number: str) -> str:
 
 
 def own_damper_html(values: Values, number: str) -> str:
-    """The place for one's own damper (wasm/page/own.js), beside the charts to design one by."""
+    """The place for one's own damper (src/wasm/page/own.js), beside the charts to design one by."""
     if values.figures[number]["table"] != "design_charts":
         return ""
     return f"\n<div data-own='{own_html()}' data-words='Your own damper, in kilograms and millimetres'></div>"

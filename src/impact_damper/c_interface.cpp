@@ -57,10 +57,8 @@ class Columns {
 
   void add_all() {
     add("end_time", all_.run.end_time);
-    if (all_.scales) {
-      const SiUnits units = si_units_of(*all_.scales);
-      for (const SiUnit& unit : si_units) add("units/" + std::string(unit.name), units.*unit.member);
-    }
+    if (all_.scales)
+      for (const Dimension each : dimensions_in_files) add("units/" + key_of(each), all_.scales->in_si(each));
     add("", all_.run);
   }
 

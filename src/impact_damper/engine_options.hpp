@@ -63,7 +63,7 @@ constexpr OptionInfo max_steps(bool in_every_file) {
   return {.name = "max_steps",
           .symbol = "N",
           .range = at_least(1),
-          .meaning = "stop after so many steps, of the searches for events or, with cem, of time",
+          .meaning = "largest number of steps, of searches for events or, with cem, of time",
           .in_every_file = in_every_file,
           .decides_motion = false};
 }

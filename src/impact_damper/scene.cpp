@@ -4,6 +4,7 @@
 
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/text.hpp"
+#include "impact_damper/units.hpp"
 
 namespace impact_damper {
 namespace {
@@ -12,21 +13,24 @@ namespace {
 // scene's numbers finite.
 constexpr double largest_number = 1e12;
 
+using enum Dimension;
 constexpr std::array<SceneField, 11> all_fields{{
-    {"mass_ratio", &SceneDamper::mass_ratio, 1e-9, 1e6, "secondary to primary mass, nu"},
-    {"restitution", &SceneDamper::restitution, 0.0, 1.0, "coefficient of restitution, e"},
-    {"clearance", &SceneDamper::clearance, 1e-6, 1e6, "free travel of the secondary mass"},
-    {"damping_ratio", &Scene::damping_ratio, 0.0, 1e6, "viscous damping ratio of the primary mass, zeta"},
-    {"wall_stiffness", &SceneDamper::wall_stiffness, 1e-6, 1e15, "wall to primary spring stiffness, k"},
-    {"x0", &Scene::x0, -largest_number, largest_number, "initial displacement of the primary mass"},
-    {"v0", &Scene::v0, -largest_number, largest_number, "initial velocity of the primary mass"},
-    {"y0", &SceneDamper::y0, -largest_number, largest_number,
+    {"mass_ratio", &SceneDamper::mass_ratio, 1e-9, 1e6, ratio, "secondary to primary mass, nu"},
+    {"restitution", &SceneDamper::restitution, 0.0, 1.0, ratio, "coefficient of restitution, e"},
+    {"clearance", &SceneDamper::clearance, 1e-6, 1e6, length, "free travel of the secondary mass"},
+    {"damping_ratio", &Scene::damping_ratio, 0.0, 1e6, ratio,
+     "viscous damping ratio of the primary mass, zeta"},
+    {"wall_stiffness", &SceneDamper::wall_stiffness, 1e-6, 1e15, ratio,
+     "wall to primary spring stiffness, k"},
+    {"x0", &Scene::x0, -largest_number, largest_number, length, "initial displacement of the primary mass"},
+    {"v0", &Scene::v0, -largest_number, largest_number, velocity, "initial velocity of the primary mass"},
+    {"y0", &SceneDamper::y0, -largest_number, largest_number, length,
      "initial distance of the secondary mass from the left wall"},
-    {"w0", &SceneDamper::w0, -largest_number, largest_number,
+    {"w0", &SceneDamper::w0, -largest_number, largest_number, velocity,
      "initial velocity of the secondary mass in the cavity"},
-    {"force_amplitude", &Scene::force_amplitude, -largest_number, largest_number,
+    {"force_amplitude", &Scene::force_amplitude, -largest_number, largest_number, force,
      "forcing amplitude f0, 0 for none"},
-    {"force_frequency", &Scene::force_frequency, 1e-12, 1e6, "forcing frequency omega_f"},
+    {"force_frequency", &Scene::force_frequency, 1e-12, 1e6, frequency, "forcing frequency omega_f"},
 }};
 
 constexpr bool is_clearance(const SceneField& field) { return field.number.is(&SceneDamper::clearance); }
@@ -55,18 +59,21 @@ Problem problem_of_several() {
   return {"dampers", "a list is for run, sweep, report and response: give one damper without a list"};
 }
 
-std::string SceneNumber::name() const {
+const SceneField& field_of(const SceneNumber& number) {
   const auto is_it = [&](const SceneField& field) {
-    return field.number.own == own && field.number.of_damper == of_damper;
+    return field.number.own == number.own && field.number.of_damper == number.of_damper;
   };
-  const std::string name(std::ranges::find_if(all_fields, is_it)->name);
-  return damper ? name + "_" + std::to_string(*damper + 1) : name;
+  return *std::ranges::find_if(all_fields, is_it);
+}
+std::string name_of(const SceneNumber& number) {
+  const std::string name(field_of(number).name);
+  return number.damper ? name + "_" + std::to_string(*number.damper + 1) : name;
 }
 
 std::vector<NamedSceneNumber> numbers_of(const Scene& scene) {
   std::vector<NamedSceneNumber> all;
   const auto add = [&](const SceneNumber& number, const SceneField& field) {
-    all.push_back({number.name(), number, field.least, field.most});
+    all.push_back({name_of(number), number, field.least, field.most});
   };
   for (const SceneField& field : scene_fields)
     if (field.number.own || has_one_damper(scene)) add(field.number, field);

@@ -1,113 +1,36 @@
 #include "impact_damper/simulate.hpp"
 
-#include <algorithm>
-#include <limits>
-#include <string>
-
-#include "impact_damper/engines/compatibility.hpp"
+#include "impact_damper/engines/checked.hpp"
 #include "impact_damper/engines/recorded.hpp"
 
 namespace impact_damper {
 namespace {
 
-Outcome run(const Scene& scene, Exact& options, Recorder& recorder) {
-  return has_one_damper(scene) ? run_exact<double>(scene, options, recorder)
-                               : run_exact_dampers<double>(scene, options, recorder);
+Outcome recorded(const Checked& run, const Exact&, Recorder& recorder) {
+  return has_one_damper(run.scene()) ? run_exact<double>(run, recorder)
+                                     : run_exact_dampers<double>(run, recorder);
 }
 
-Outcome run(const Scene& scene, Restitution& options, Recorder& recorder) {
-  return has_one_damper(scene) ? run_restitution<double>(scene, options, recorder)
-                               : run_restitution_dampers<double>(scene, options, recorder);
+Outcome recorded(const Checked& run, const Restitution&, Recorder& recorder) {
+  return has_one_damper(run.scene()) ? run_restitution<double>(run, recorder)
+                                     : run_restitution_dampers<double>(run, recorder);
 }
 
-Outcome run(const Scene& scene, Cem& options, Recorder& recorder) {
-  options = resolved(scene, options);
-  return has_one_damper(scene) ? run_cem<double>(scene, options, recorder)
-                               : run_cem_dampers<double>(scene, options, recorder);
-}
-
-std::vector<Problem> problems_of(const Scene& scene, const Engine& engine, const Record& record) {
-  std::vector<Problem> problems = problems_of(scene);
-  const auto add_all = [&](const std::vector<Problem>& more) {
-    problems.insert(problems.end(), more.begin(), more.end());
-  };
-  add_all(problems_of(engine));
-  if (problems.empty()) add_all(incompatibilities_of(scene, engine));
-
-  const Budget& budget =
-      std::visit([](const auto& options) -> const Budget& { return options.budget; }, engine);
-
-  // Rejects budgets whose records would not fit into memory.
-  const auto dampers = std::int64_t(std::max<std::size_t>(1, scene.dampers.size()));
-  const auto bounded = [&](const std::string& field, std::int64_t rows, const std::string& what,
-                           std::int64_t most = most_rows) {
-    if (rows <= most) return;
-    problems.push_back({field, "must be <= " + std::to_string(most) + " where " + what + " recorded, got " +
-                                   std::to_string(rows)});
-  };
-  if (record.impacts || record.contacts || record.energy) {
-    bounded("max_impacts", budget.max_impacts, "impacts, contacts or energy are");
-  }
-  if (record.half_cycles) bounded("max_half_cycles", budget.max_half_cycles, "half cycles are");
-  std::int64_t samples = 0;
-  const auto add = [&](const auto& windows) {
-    for (const auto& window : windows) {
-      samples = window.count > most_samples - samples ? most_samples + 1 : samples + window.count;
-    }
-  };
-  add(record.history);
-  add(record.history_below);
-  if (samples > most_samples / dampers) {
-    problems.push_back(
-        {record.history.empty() ? "history_below" : "history",
-         "must ask for at most " + std::to_string(most_samples / dampers) + " samples in all"});
-  }
-
-  if (!record.history.empty() && !record.history_below.empty()) {
-    problems.push_back({"history", "either by times or by amplitudes, not both in one run"});
-  }
-  double last = 0;
-  for (const HistoryWindow& window : record.history) {
-    if (!(window.begin >= last && window.end > window.begin && window.end <= 1e12 && window.count >= 2)) {
-      problems.push_back(
-          {"history",
-           "each window must begin at or after the end of the one before, end after it begins, "
-           "and have at least 2 samples"});
-      break;
-    }
-    last = window.end;
-  }
-  double above = std::numeric_limits<double>::infinity();
-  for (const AmplitudeWindow& window : record.history_below) {
-    if (!(window.amplitude > 0 && window.amplitude < above && window.length > 0 && window.count >= 2)) {
-      problems.push_back(
-          {"history_below", "amplitudes must be > 0 and descend, lengths be > 0, samples be at least 2"});
-      break;
-    }
-    above = window.amplitude;
-  }
-  return problems;
+Outcome recorded(const Checked& run, const Cem&, Recorder& recorder) {
+  return has_one_damper(run.scene()) ? run_cem<double>(run, recorder)
+                                     : run_cem_dampers<double>(run, recorder);
 }
 
 }  // namespace
 
 Run simulate(const Scene& scene, const Engine& engine, const Record& record) {
-  require_none(problems_of(scene, engine, record));
-
+  const Checked run = checked(scene, engine, record);
   Run result;
-  result.scene = scene;
-  result.engine = engine;
+  result.scene = run.scene();
+  result.engine = run.engine();
   Recorder recorder(record, scene.dampers.size());
-  const Outcome outcome = std::visit(
-      [&](auto& options) {
-        options.budget = budget_for(scene, options.budget);
-        if (record.half_cycles) {
-          options.budget.max_half_cycles =
-              std::min(options.budget.max_half_cycles, most_half_cycles(scene.dampers.size()));
-        }
-        return run(scene, options, recorder);
-      },
-      result.engine);
+  const Outcome outcome =
+      std::visit([&](const auto& options) { return recorded(run, options, recorder); }, run.engine());
   result.stop_reason = outcome.stop_reason;
   result.end_time = outcome.end_time;
   recorder.finish(result);

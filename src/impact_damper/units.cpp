@@ -11,8 +11,42 @@
 namespace impact_damper {
 namespace {
 
-constexpr double small = 1e-15, large = 1e15;
-constexpr double metres = 1e-3;  // per millimetre
+// What sizes are made of: M, K, 1/Omega_n, and epsilon in m and in the unit of lengths.
+struct Basis {
+  double mass, stiffness, time, metres, length;
+};
+struct UnitRow {
+  Dimension dimension;
+  std::string_view dimensionless, in_units, suffix;  // names of the unit, the last one in SI
+  double (*size)(const Basis&);
+};
+using enum Dimension;
+constexpr std::array<UnitRow, 13> unit_table{{
+    {ratio, "", "", "", [](const Basis&) { return 1.0; }},
+    {count, "", "", "", [](const Basis&) { return 1.0; }},
+    {length, "epsilon", "mm", "_m", [](const Basis& b) { return b.length; }},
+    {time, "1/Omega_n", "s", "_s", [](const Basis& b) { return b.time; }},
+    {velocity, "epsilon Omega_n", "mm/s", "_m_per_s", [](const Basis& b) { return b.length / b.time; }},
+    {mass, "M", "kg", "_kg", [](const Basis& b) { return b.mass; }},
+    {force, "K epsilon", "N", "_N", [](const Basis& b) { return b.stiffness * b.metres; }},
+    {energy, "K epsilon^2", "J", "_J", [](const Basis& b) { return b.stiffness * b.metres * b.metres; }},
+    {power, "K epsilon^2 Omega_n", "W", "_W",
+     [](const Basis& b) { return b.stiffness * b.metres * b.metres / b.time; }},
+    {frequency, "Omega_n", "Hz", "_Hz", [](const Basis& b) { return 1 / (2 * std::numbers::pi * b.time); }},
+    {rate, "Omega_n", "1/s", "_per_s", [](const Basis& b) { return 1 / b.time; }},
+    {stiffness, "K", "N/m", "_N_per_m", [](const Basis& b) { return b.stiffness; }},
+    {damping, "2 sqrt(K M)", "N s/m", "_N_s_per_m",
+     [](const Basis& b) { return 2 * std::sqrt(b.stiffness * b.mass); }},
+}};
+const UnitRow& row_of(Dimension dimension) {
+  return *std::ranges::find(unit_table, dimension, &UnitRow::dimension);
+}
+
+constexpr double metres_per_millimetre = 1e-3;
+Basis basis_of(const Scales& scales, double length_unit) {
+  return {scales.mass, scales.stiffness, std::sqrt(scales.mass / scales.stiffness),
+          scales.length * metres_per_millimetre, scales.length * length_unit};
+}
 
 // The field of the scene in units that `field` of the dimensionless scene was made from.
 std::string maker_of(const SceneInUnits& scene, std::string_view field) {
@@ -24,6 +58,15 @@ std::string maker_of(const SceneInUnits& scene, std::string_view field) {
   return maker;
 }
 
+constexpr NumberRange some{1e-15, 1e15}, any{-1e15, 1e15}, not_negative{0, 1e15}, positive{0, 1e15, false};
+
+// The number of a dimensionless scene with this name.
+SceneNumber number_named(std::string_view name) {
+  const auto* its = std::ranges::find(scene_damper_fields, name, &SceneField::name);
+  if (its == scene_damper_fields.end()) its = std::ranges::find(scene_fields, name, &SceneField::name);
+  return its->number;
+}
+
 bool is_needed(std::string_view name) {
   return name == "mass" || name == "stiffness" || name == "secondary_mass" || name == "clearance";
 }
@@ -31,60 +74,63 @@ bool is_needed(std::string_view name) {
 }  // namespace
 
 constexpr std::array<UnitField, 16> unit_fields{{
-    {"mass", &SceneInUnits::mass, small, true, large, "kg", "", false, "mass M of the primary system"},
-    {"stiffness", &SceneInUnits::stiffness, small, true, large, "N/m", "", false,
-     "stiffness K of its spring"},
-    {"secondary_mass", &DamperInUnits::secondary_mass, small, true, large, "kg", "mass_ratio", false,
-     "secondary mass"},
-    {"clearance", &DamperInUnits::clearance, small, true, large, "mm", "clearance", false,
+    {"mass", &SceneInUnits::mass, some, mass, "", "mass M of the primary system"},
+    {"stiffness", &SceneInUnits::stiffness, some, stiffness, "", "stiffness K of its spring"},
+    {"secondary_mass", &DamperInUnits::secondary_mass, some, mass, "mass_ratio", "secondary mass"},
+    {"clearance", &DamperInUnits::clearance, some, length, "clearance",
      "clearance of the secondary mass, epsilon"},
-    {"restitution", &DamperInUnits::restitution, 0, true, 1, "", "restitution", true,
+    {"restitution", &DamperInUnits::restitution, within(0, 1), ratio, "restitution",
      "coefficient of restitution, e"},
-    {"damping", &SceneInUnits::damping, 0, true, large, "N s/m", "damping_ratio", false,
+    {"damping", &SceneInUnits::damping, not_negative, damping, "damping_ratio",
      "viscous damping of the primary system"},
-    {"damping_ratio", &SceneInUnits::damping_ratio, 0, true, 1e6, "", "damping_ratio", true,
+    {"damping_ratio", &SceneInUnits::damping_ratio, within(0, 1e6), ratio, "damping_ratio",
      "the same by critical damping, zeta"},
-    {"contact_stiffness", &DamperInUnits::contact_stiffness, small, true, large, "N/m", "wall_stiffness",
-     false, "stiffness of the walls"},
-    {"initial_displacement", &SceneInUnits::initial_displacement, -large, true, large, "mm", "x0", false,
+    {"contact_stiffness", &DamperInUnits::contact_stiffness, some, stiffness, "wall_stiffness",
+     "stiffness of the walls"},
+    {"initial_displacement", &SceneInUnits::initial_displacement, any, length, "x0",
      "initial displacement of the primary mass"},
-    {"initial_velocity", &SceneInUnits::initial_velocity, -large, true, large, "mm/s", "v0", false,
+    {"initial_velocity", &SceneInUnits::initial_velocity, any, velocity, "v0",
      "initial velocity of the primary mass"},
-    {"secondary_displacement", &DamperInUnits::secondary_displacement, -large, true, large, "mm", "y0", false,
+    {"secondary_displacement", &DamperInUnits::secondary_displacement, any, length, "y0",
      "initial distance of the secondary mass from the left wall"},
-    {"secondary_velocity", &DamperInUnits::secondary_velocity, -large, true, large, "mm/s", "w0", false,
+    {"secondary_velocity", &DamperInUnits::secondary_velocity, any, velocity, "w0",
      "initial velocity of the secondary mass in the cavity"},
-    {"exciting_force", &SceneInUnits::exciting_force, -large, true, large, "N", "force_amplitude", false,
+    {"exciting_force", &SceneInUnits::exciting_force, any, force, "force_amplitude",
      "amplitude of the exciting force"},
-    {"exciting_frequency", &SceneInUnits::exciting_frequency, 0, false, large, "Hz", "force_frequency", false,
+    {"exciting_frequency", &SceneInUnits::exciting_frequency, positive, frequency, "force_frequency",
      "frequency of the exciting force"},
-    {"until_seconds", &SceneInUnits::until_seconds, 0, false, large, "s", "until_time", false,
+    {"until_seconds", &SceneInUnits::until_seconds, positive, time, "until_time",
      "the run ends at this time"},
-    {"until_millimetres", &SceneInUnits::until_millimetres, 0, false, large, "mm", "until_amplitude", false,
+    {"until_millimetres", &SceneInUnits::until_millimetres, positive, length, "until_amplitude",
      "the run ends with the first half cycle of a lower amplitude"},
 }};
 
-double Scales::time() const { return std::sqrt(mass / stiffness); }
-double Scales::frequency() const { return 1 / (2 * std::numbers::pi * time()); }
-double Scales::velocity() const { return length / time(); }
-double Scales::force() const { return stiffness * (length * metres); }
-double Scales::energy() const { return force() * (length * metres); }
-double Scales::damping() const { return 2 * std::sqrt(stiffness * mass); }
+std::string_view unit_of(Dimension dimension, bool in_units) {
+  return in_units ? row_of(dimension).in_units : row_of(dimension).dimensionless;
+}
+std::string with_unit(const std::string& number, std::string_view unit) {
+  return unit.empty() ? number : number + ' ' + std::string(unit);
+}
+std::string_view suffix_of(Dimension dimension) { return row_of(dimension).suffix; }
+std::string key_of(Dimension dimension) { return std::string(name_of(dimension)) += suffix_of(dimension); }
 
-SiUnits si_units_of(const Scales& scales) {
-  const double length = scales.length * metres;
-  return {length, scales.time(), length / scales.time(), scales.mass, scales.force(), scales.energy()};
+double Scales::of(Dimension dimension) const { return row_of(dimension).size(basis_of(*this, 1)); }
+double Scales::in_si(Dimension dimension) const {
+  return row_of(dimension).size(basis_of(*this, metres_per_millimetre));
+}
+double scale_of(Dimension dimension, const std::optional<Scales>& scales) {
+  return scales ? scales->of(dimension) : 1;
 }
 
 std::vector<Problem> problems_of(const SceneInUnits& scene) {
   std::vector<Problem> problems;
   const auto check = [&](const std::string& name, const UnitField& field,
                          const std::optional<double>& value) {
-    const NumberRange range{field.least, field.most, field.least_is_allowed};
     if (!value && is_needed(field.name))
-      problems.push_back({name, "missing, a value must be given in " + std::string(field.unit)});
-    if (value && !range.allows(*value))
-      problems.push_back({name, range.describe("must be") + ", got " + number_text(*value)});
+      problems.push_back(
+          {name, "missing, a value must be given in " + std::string(unit_of(field.dimension, true))});
+    if (value && !field.range.allows(*value))
+      problems.push_back({name, field.range.describe("must be") + ", got " + number_text(*value)});
   };
   const bool one = scene.dampers.size() == 1;
   for (const UnitField& field : unit_fields)
@@ -116,24 +162,21 @@ Scales scales_of(const SceneInUnits& scene) {
 Scene dimensionless(const SceneInUnits& scene) {
   const Scales scales = scales_of(scene);
   Scene made;
-  made.dampers.clear();
-  for (const DamperInUnits& damper : scene.dampers) {
-    SceneDamper& its = made.dampers.emplace_back();
-    its.mass_ratio = *damper.secondary_mass / scales.mass;
-    its.restitution = damper.restitution.value_or(its.restitution);
-    its.clearance = *damper.clearance / scales.length;
-    if (damper.contact_stiffness) its.wall_stiffness = *damper.contact_stiffness / scales.stiffness;
-    its.y0 = damper.secondary_displacement.value_or(0) / scales.length;
-    its.w0 = damper.secondary_velocity.value_or(0) / scales.velocity();
+  made.x0 = 0;
+  made.dampers.resize(scene.dampers.size());
+  for (const UnitField& field : unit_fields) {
+    for (std::size_t i = 0; i < (field.number.of_damper ? made.dampers.size() : 1); ++i) {
+      const auto& given = NumberInUnits{field.number, i}.in(scene);
+      if (!given) continue;
+      const double number = *given / scales.of(field.dimension);
+      if (field.becomes == "until_time")
+        made.until_time = number;
+      else if (field.becomes == "until_amplitude")
+        made.until_amplitude = number;
+      else if (!field.becomes.empty())
+        SceneNumber{number_named(field.becomes), i}.in(made) = number;
+    }
   }
-  if (scene.damping) made.damping_ratio = *scene.damping / scales.damping();
-  if (scene.damping_ratio) made.damping_ratio = *scene.damping_ratio;
-  made.x0 = scene.initial_displacement.value_or(0) / scales.length;
-  made.v0 = scene.initial_velocity.value_or(0) / scales.velocity();
-  made.force_amplitude = scene.exciting_force.value_or(0) / scales.force();
-  if (scene.exciting_frequency) made.force_frequency = *scene.exciting_frequency / scales.frequency();
-  if (scene.until_seconds) made.until_time = *scene.until_seconds / scales.time();
-  if (scene.until_millimetres) made.until_amplitude = *scene.until_millimetres / scales.length;
   return made;
 }
 

@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 SOURCE = Path(sys.argv[1])
-FOLDERS = [SOURCE / folder for folder in ("src", "src/cli", "tests", "tests/mutation", "tests/stress", "bench", "wasm")]
+FOLDERS = [SOURCE / folder for folder in ("src", "src/include", "src/application/cli", "tests", "tests/mutation", "tests/stress", "bench")]
 ALGORITHMS = ("all_of any_of binary_search clamp copy copy_if copy_n count count_if equal equal_range fill fill_n find find_if generate "
               "is_sorted lower_bound max max_element merge min min_element minmax minmax_element mismatch none_of nth_element "
               "partial_sort partition remove_if replace reverse rotate set_difference shuffle sort stable_sort transform unique upper_bound")
@@ -65,7 +65,7 @@ def included(file: Path) -> frozenset:
 
 
 def main() -> int:
-    files = sorted(file for folder in ("src", "tests", "bench", "examples", "python", "wasm")
+    files = sorted(file for folder in ("src", "tests", "bench", "examples")
                    for file in (SOURCE / folder).rglob("*.[ch]pp") if "build" not in file.parts)
     missing = [f"{file.relative_to(SOURCE)}: <{header}> is not included, for {used[0]}" for file in files
                for header, names in NAMES.items() if header not in included(file)

@@ -24,7 +24,7 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parents[2]
 CPPCHECK = ["cppcheck", "--enable=warning,style,performance,portability", "--std=c++20", "--error-exitcode=1", "--quiet",
             "--inline-suppr", "--suppressions-list=tests/checks/cppcheck.txt", "--template={file}:{line}: {message} [{id}]",
-            "-Isrc", "src"]
+            "-Isrc", "-Isrc/include", "src"]
 ALONE = {"recorded": "/engines/recorded_", "singles": "/(c_interface|run_csv|steady_state)[.]",
          "application": "/(damper_set_design|hdf5_table|kept_quantities)[.]"}
 

@@ -96,10 +96,10 @@ demand(interval in (source / "docs/compare.md").read_text(encoding="utf-8"), f"d
 widths = [each["high"] - each["low"] for each in (found["fit"]["parameters"][2], known["fit"]["parameters"][1])]
 demand(widths[1] < widths[0] / 5, f"widths of the clearance's interval: {widths}")
 
-# Large amplitudes alone: restitution and clearance are not told apart.
+# Large amplitudes alone: restitution and clearance are not distinguished.
 text, begin = compare(record("begin.csv", "seconds=8", "gap_from=99"), "--engine", "restitution")
 demand("above the" in text and "where impacts cease" in text, text)
-demand("hardly told apart" in text or "does not tell" in text, text)
+demand("hardly be distinguished" in text or "does not tell" in text, text)
 # An acceleration with the same amplitudes and frequency: two derivatives make -omega^2 of it.
 rows = [line.split(",") for line in example.read_text(encoding="utf-8").split()[1:]]
 omega = 2 * 3.14159265 * found["reduction"]["frequency"]

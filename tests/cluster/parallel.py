@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""cluster/parallel makes the table that one process makes, on this machine and on two others, one of which dies.
+"""examples/cluster/parallel makes the table that one process makes, on this machine and on two others, one of which dies.
 
     parallel.py PROGRAM SOURCE FOLDER        FOLDER, made anew, is for the files
 
@@ -53,7 +53,7 @@ def demand(holds, what):
 
 def start(table, on):
     (work / "machines").write_text("".join(f"{each}\n" for each in on))
-    return subprocess.Popen([source / "cluster/parallel", "plan.json", table, "6", "machines", "scene.json"], cwd=work,
+    return subprocess.Popen([source / "examples/cluster/parallel", "plan.json", table, "6", "machines", "scene.json"], cwd=work,
                             env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
 

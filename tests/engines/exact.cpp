@@ -6,7 +6,8 @@ namespace impact_damper {
 
 template <class Real>
 Outcome observed(const Scene& scene, const Exact& options, TestObserver<Real>& observer) {
-  return run_exact<Real>(scene, options, observer);
+  return with_system<Real>(scene,
+                           [&](const auto& system) { return run_exact(system, scene, options, observer); });
 }
 template Outcome observed(const Scene&, const Exact&, TestObserver<double>&);
 template Outcome observed(const Scene&, const Exact&, TestObserver<long double>&);

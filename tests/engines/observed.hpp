@@ -51,7 +51,8 @@ class TestObserver : public Recorder {
   void passed(const Real&, const Real&, const State<Real>& end) { ended(end); }
 };
 
-// Runs a scene that problems_of finds nothing wrong with.
+// Runs a scene without checked(): differences, and limits, are also taken of scenes just outside of what is
+// allowed.
 template <class Real>
 Outcome observed(const Scene& scene, const Exact& options, TestObserver<Real>& observer);
 template <class Real>

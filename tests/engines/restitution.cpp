@@ -6,7 +6,8 @@ namespace impact_damper {
 
 template <class Real>
 Outcome observed(const Scene& scene, const Restitution& options, TestObserver<Real>& observer) {
-  return run_restitution<Real>(scene, options, observer);
+  return with_system<Real>(
+      scene, [&](const auto& system) { return run_restitution(system, scene, options, observer); });
 }
 template Outcome observed(const Scene&, const Restitution&, TestObserver<double>&);
 template Outcome observed(const Scene&, const Restitution&, TestObserver<long double>&);

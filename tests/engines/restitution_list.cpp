@@ -4,7 +4,8 @@
 namespace impact_damper {
 
 Outcome observed_list(const Scene& scene, const Restitution& options, TestObserver<long double>& observer) {
-  return run_restitution_dampers<long double>(scene, options, observer);
+  return with_system<long double>(
+      scene, [&](const auto& system) { return run_restitution_dampers(system, scene, options, observer); });
 }
 
 }  // namespace impact_damper

@@ -1,5 +1,5 @@
 // What is read as a catalogue holds together: every curve has its scene, every figure a name for its files.
-#include "impact_damper/reproduction/catalogue.hpp"
+#include "application/reproduction/catalogue.hpp"
 
 #include "fuzz.hpp"
 

@@ -1,11 +1,11 @@
 // What is read as claims can be judged, each by a measure that is known.
-#include "impact_damper/reproduction/claims.hpp"
+#include "application/reproduction/claims.hpp"
 
 #include <algorithm>
 #include <limits>
 
+#include "application/reproduction/measures.hpp"
 #include "fuzz.hpp"
-#include "impact_damper/reproduction/measures.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace impact_damper;

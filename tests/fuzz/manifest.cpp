@@ -1,5 +1,5 @@
 // What is read as a manifest holds together: its stamps are stamps, and lead to their figures.
-#include "impact_damper/reproduction/manifest.hpp"
+#include "application/reproduction/manifest.hpp"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 // What is read as a plan is written as one that reads as the same, and has runs.
+#include "application/sweeps/plan_file.hpp"
 #include "fuzz.hpp"
 #include "impact_damper/io/json_writer.hpp"
-#include "impact_damper/sweeps/plan_file.hpp"
 
 namespace {
 

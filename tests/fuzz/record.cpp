@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "application/measured/decay_fit.hpp"
 #include "fuzz.hpp"
-#include "impact_damper/measured/decay_fit.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace impact_damper;

@@ -10,8 +10,8 @@
 #include <cstdlib>
 #include <string>
 
+#include "application/measured/decay_fit.hpp"
 #include "impact_damper/analysis/parallel.hpp"
-#include "impact_damper/measured/decay_fit.hpp"
 #include "made_records.hpp"
 
 using namespace impact_damper;

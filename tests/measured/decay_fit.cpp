@@ -1,4 +1,4 @@
-#include "impact_damper/measured/decay_fit.hpp"
+#include "application/measured/decay_fit.hpp"
 
 #include <doctest/doctest.h>
 

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "impact_damper/measured/record.hpp"
+#include "application/measured/record.hpp"
 #include "impact_damper/units.hpp"
 #include "plain_integration.hpp"
 
@@ -49,12 +49,12 @@ inline MeasuredRecord measured(const SceneInUnits& in_units, const Instrument& i
     const double part = history.time[i] / history.time.back();
     // Between impacts; a stuck mass is carried along.
     const double acceleration = -(history.x[i] + 2 * scene.damping_ratio * history.v[i]) * scales.length /
-                                (scales.time() * scales.time());
+                                (scales.of(Dimension::time) * scales.of(Dimension::time));
     double value =
         instrument.quantity == MeasuredQuantity::displacement ? history.x[i] * scales.length : acceleration;
     value += instrument.offset + instrument.drift / 2 * (part + std::sin(2 * std::numbers::pi * part) / 2) +
              instrument.noise * normal(random);
-    record.time.push_back(history.time[i] * scales.time() * instrument.time_factor);
+    record.time.push_back(history.time[i] * scales.of(Dimension::time) * instrument.time_factor);
     record.value.push_back(value);
   }
   return record;

@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "application/measured/record.hpp"
 #include "impact_damper/base/errors.hpp"
-#include "impact_damper/measured/record.hpp"
 
 using namespace impact_damper;
 

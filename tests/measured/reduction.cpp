@@ -1,6 +1,6 @@
 // Against records of the viscous oscillator x = A exp(-zeta t) cos(w t), whose peaks and loss factor are
 // known.
-#include "impact_damper/measured/reduction.hpp"
+#include "application/measured/reduction.hpp"
 
 #include <doctest/doctest.h>
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "impact_damper/measured/comparison.hpp"
-#include "impact_damper/measured/decay_fit.hpp"
+#include "application/measured/comparison.hpp"
+#include "application/measured/decay_fit.hpp"
 #include "made_records.hpp"
 
 using namespace impact_damper;

@@ -32,7 +32,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 PAGE = HERE / "results.md"
 SOURCE = HERE.parents[1]
-LIBRARY = Path("src/impact_damper")
+LIBRARY = Path("src")
 BUILD_TIMEOUT = 900
 FLAGS = "-O1"
 CLI_TESTS = ["ctest", "-R", "^(cli|corpus): ", "-E", "1 GB|schemas", "--stop-on-failure", "--output-on-failure"]

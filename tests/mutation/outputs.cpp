@@ -11,13 +11,13 @@
 #include <set>
 #include <sstream>
 
+#include "application/reproduction/measures.hpp"
+#include "application/reproduction/series.hpp"
+#include "application/sweeps/plan_file.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
-#include "impact_damper/reproduction/measures.hpp"
-#include "impact_damper/reproduction/series.hpp"
 #include "impact_damper/simulate.hpp"
-#include "impact_damper/sweeps/plan_file.hpp"
 #include "planter.hpp"
 
 using namespace impact_damper;

@@ -5,11 +5,11 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "application/reproduction/measures.hpp"
+#include "application/reproduction/series.hpp"
 #include "impact_damper/engine_options.hpp"
 #include "impact_damper/io/run_columns.hpp"
 #include "impact_damper/io/run_file.hpp"
-#include "impact_damper/reproduction/measures.hpp"
-#include "impact_damper/reproduction/series.hpp"
 #include "impact_damper/simulate.hpp"
 
 using namespace impact_damper;

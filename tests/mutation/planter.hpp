@@ -14,9 +14,9 @@
 #include <string>
 #include <string_view>
 
+#include "application/reproduction/catalogue.hpp"
+#include "application/reproduction/table.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
-#include "impact_damper/reproduction/catalogue.hpp"
-#include "impact_damper/reproduction/table.hpp"
 #include "impact_damper/run.hpp"
 
 namespace planted {

@@ -3,19 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <map>
 #include <numbers>
+#include <utility>
 
 #include "impact_damper/simulate.hpp"
+#include "list_of_one.hpp"
 #include "print.hpp"
 
 namespace oracle {
 namespace {
 
 using namespace impact_damper;
-using impact_damper::Energy;
 
 // What an engine is off by in one operation, relative to the numbers in it; a size of noise at which growth
 // is still to be linear; and up to which predicted error, relative to its size, a number is compared.
@@ -37,43 +37,109 @@ double first_step(const Scene& scene) {
   return std::numbers::pi / 100 * shortest;
 }
 
-constexpr int samples_of_a_run = 65;
+// Rigid walls and several dampers: a damper's chattering may begin anew at each impact of another one. The
+// engine takes its end at once; contacts as near to each other as this, times 1 + t, are then one, and the
+// begin of sticking may be off by three times that, in a chattering within another one by thirty times.
+// Impacts so shortly before sticking, times 1 + t, and so slow, need not be listed.
+constexpr double sticking_begin = 1e-7, chattering_time = 1e-3, chattering_speed = 1e-5;
+
+// Of a comparison.
+struct Setting {
+  Question question;
+  Accuracy accuracy;
+  bool nested = false;  // rigid walls, several dampers
+  const Scene& scene() const { return question.scene; }
+  int dampers() const { return int(question.scene.dampers.size()); }
+};
 
 // As the engines' recorder places them.
-std::vector<double> sample_times(double end) {
+std::vector<double> sample_times(double end, int count = sample_count) {
   std::vector<double> times;
-  for (int i = 0; i < samples_of_a_run; ++i)
-    times.push_back(i + 1 < samples_of_a_run ? double(i) / (samples_of_a_run - 1) * end : end);
+  for (int i = 0; i < count; ++i) times.push_back(i + 1 < count ? double(i) / (count - 1) * end : end);
   return times;
 }
 
-// What has a growth of its own.
-enum Kind { time_, peak_time_, x_, v_, y_, w_, loss_, kinds_ };
+// What has a growth of its own; `unknown`: has none.
+enum Kind { time_, peak_time_, x_, v_, y_, w_, loss_, kinds_, unknown };
 
-// The events of an answer or of a run, in one form.
-struct Events {
-  std::vector<oracle::Impact> impacts;
-  std::vector<Contact> contacts;
-  std::vector<HalfCycle> rows;
-  std::vector<bool> merged;  // rows that were three
-};
-
-Events events_of(const Answer& answer) { return {answer.impacts, answer.contacts, answer.half_cycles, {}}; }
-Events events_of(const Run& run) {
-  Events events;
+// The events of a run, and its motion, in the oracle's form.
+Answer answer_of(const Run& run) {
+  Answer answer;
   for (std::size_t i = 0; i < run.impacts->time.size(); ++i)
-    events.impacts.push_back({run.impacts->time[i],
-                              run.impacts->wall[i],
-                              run.impacts->relative_velocity[i],
-                              run.energy->impact_loss[i],
-                              run.impacts->displacement[i],
-                              {}});
+    answer.impacts.push_back({run.impacts->time[i], run.impacts->damper.at(i), run.impacts->wall[i],
+                              run.impacts->relative_velocity[i], run.impacts->displacement[i],
+                              run.energy->impact_loss[i]});
   for (std::size_t i = 0; i < run.contacts->begin.size(); ++i)
-    events.contacts.push_back({run.contacts->begin[i], run.contacts->end[i], run.contacts->wall[i]});
+    answer.contacts.push_back(
+        {run.contacts->begin[i], run.contacts->end[i], run.contacts->damper.at(i), run.contacts->wall[i]});
   for (std::size_t i = 0; i < run.half_cycles->amplitude.size(); ++i)
-    events.rows.push_back(
+    answer.half_cycles.push_back(
         {run.half_cycles->zero_crossing[i], run.half_cycles->peak_time[i], run.half_cycles->amplitude[i]});
-  return events;
+  for (std::size_t i = 0; i < run.history->time.size(); ++i) {
+    Sample& sample = answer.samples.emplace_back(Sample{run.history->x[i], run.history->v[i], {}, {}});
+    for (const History::Damper& each : run.history->dampers)
+      sample.y.push_back(each.y.at(i)), sample.w.push_back(each.w.at(i));
+  }
+  return answer;
+}
+
+// The terms of the energy balance, each with its name.
+struct Term {
+  std::string name;
+  Quad value;
+  bool initial = false;
+};
+template <class Each>
+void add_energy(std::vector<Term>& terms, const std::string& when, const Each& now) {
+  const bool initial = when == "initial";
+  terms.push_back({when + " kinetic energy", now.kinetic, initial});
+  terms.push_back({when + " spring energy", now.spring, initial});
+  terms.push_back({when + " wall energy", now.wall, initial});
+  terms.push_back({when + " paper's energy", now.paper, initial});
+}
+void add_losses(std::vector<Term>& terms, const Setting& setting, Quad impacts, Quad contacts) {
+  if (setting.accuracy.by_steps) {
+    // A contact that begins without speed may begin with an impact here: only the sum is known.
+    terms.push_back({"all losses", impacts + contacts});
+  } else {
+    terms.push_back({"loss of all impacts", impacts});
+    terms.push_back({"contact loss", contacts});
+  }
+}
+void add_damper(std::vector<Term>& terms, std::size_t number, Quad initial, Quad final, Quad loss) {
+  const std::string which = "damper " + std::to_string(number);
+  terms.push_back({which + " initial energy", initial, true});
+  terms.push_back({which + " final energy", final});
+  terms.push_back({which + " loss", loss});
+}
+std::vector<Term> terms_of(const Answer& answer, const Setting& setting) {
+  std::vector<Term> terms{{"viscous work", answer.viscous_work}, {"forcing work", answer.forcing_work}};
+  add_energy(terms, "initial", answer.initial);
+  add_energy(terms, "final", answer.final);
+  add_losses(terms, setting, answer.impact_loss() + answer.chatter_loss(), answer.contact_loss());
+  for (std::size_t n = 0; n < answer.dampers.size(); ++n) {
+    const DamperEnergy& its = answer.dampers[n];
+    Quad loss = its.contact_loss + its.chatter_loss;
+    for (const Impact& each : answer.impacts)
+      if (each.damper == int(n)) loss += each.loss;
+    add_damper(terms, n, its.initial, its.final, loss);
+  }
+  return terms;
+}
+// Of a run without those of its dampers, if it has none.
+std::vector<Term> terms_of(const EnergyBalance& energy, const Setting& setting) {
+  std::vector<Term> terms{{"viscous work", energy.viscous_work}, {"forcing work", energy.forcing_work}};
+  add_energy(terms, "initial", energy.initial);
+  add_energy(terms, "final", energy.final);
+  Quad impacts = energy.bounce_down_loss;
+  for (const double each : energy.impact_loss) impacts += each;
+  add_losses(terms, setting, impacts, energy.contact_loss);
+  for (std::size_t n = 0; n < energy.dampers.size(); ++n) {
+    const auto& its = energy.dampers[n];
+    add_damper(terms, n, its.initial_kinetic, its.final_kinetic,
+               Quad(its.impact_loss) + its.contact_loss + its.bounce_down_loss);
+  }
+  return terms;
 }
 
 // Below these nothing can be said of an event: it is there or not by rounding.
@@ -81,162 +147,255 @@ struct Negligible {
   std::function<Quad(Quad)> duration, speed, length;
 };
 
-// Where events coincide, rounding decides whether a contact of no length is recorded, whether one is cut in
-// two by a touch, and whether a touch of x = 0 is two crossings or none: all such are taken out.
-void simplify(Events& events, const Negligible& below) {
-  std::vector<Contact> contacts;
-  for (const Contact& each : events.contacts) {
+// Where events coincide, rounding decides whether a contact of no length is recorded, and whether one is cut
+// in two by a touch: such are taken out. `within`: others come shortly before, so that its begin depends on
+// what is called no length.
+struct Held : Contact {
+  bool within = false;
+};
+std::vector<Held> contacts_of(const Answer& answer, int damper, const Setting& setting,
+                              const Negligible& below) {
+  const auto nothing = [&](Quad t) {
+    if (setting.dampers() == 1) return below.duration(t);
+    return setting.nested ? Quad(sticking_begin) * (1 + t) : Quad(0);
+  };
+  std::vector<Held> contacts;
+  std::optional<Contact> last;
+  for (const Contact& each : answer.contacts) {
+    if (each.damper != damper) continue;
+    const bool same = last && last->wall == each.wall;
     if (!contacts.empty() && contacts.back().wall == each.wall &&
-        each.begin - contacts.back().end <= below.duration(each.begin)) {
-      contacts.back().end = each.end;
-      continue;
+        each.begin - contacts.back().end <= nothing(each.begin)) {
+      contacts.back().end = each.end, contacts.back().end_speed = each.end_speed;
+      contacts.back().within = true;
+    } else {
+      contacts.push_back({each, same && each.begin - last->end <= 10 * nothing(each.begin)});
     }
-    contacts.push_back(each);
+    last = each;
   }
-  std::erase_if(contacts,
-                [&](const Contact& each) { return each.end - each.begin <= below.duration(each.begin); });
-  events.contacts = contacts;
-  std::vector<HalfCycle> rows;
-  std::vector<bool> merged;
-  for (std::size_t i = 0; i < events.rows.size(); ++i) {
-    const HalfCycle& each = events.rows[i];
-    // Not the first row: how small it is is exactly known.
-    const Quad length = i > 0 ? each.zero_crossing - events.rows[i - 1].zero_crossing : each.zero_crossing;
-    const Quad least = below.length(each.zero_crossing);
-    // As long as a parabola that high, at most.
-    if (i > 0 && i + 1 < events.rows.size() && each.amplitude <= least && length * length <= 16 * least) {
-      const HalfCycle& next = events.rows[++i];
-      HalfCycle& last = rows.back();
-      last.zero_crossing = next.zero_crossing, last.speed = next.speed;
-      if (next.amplitude > last.amplitude) last.amplitude = next.amplitude, last.peak_time = next.peak_time;
-      merged.back() = true;
-      continue;
-    }
-    rows.push_back(each);
-    merged.push_back(false);
-  }
-  events.rows = rows;
-  events.merged = merged;
+  std::erase_if(contacts, [&](const Held& each) { return each.end - each.begin <= nothing(each.begin); });
+  return contacts;
 }
 
-// The two lists side by side.
+// Rounding decides whether a touch of x = 0 is two crossings or none: such are taken out, too. `merged`: it
+// was three.
+struct Row : HalfCycle {
+  bool merged = false;
+};
+std::vector<Row> rows_of(const Answer& answer, const Negligible& below) {
+  const auto& all = answer.half_cycles;
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const HalfCycle& each = all[i];
+    // Not the first row: how small it is is exactly known.
+    const Quad length = i > 0 ? each.zero_crossing - all[i - 1].zero_crossing : each.zero_crossing;
+    const Quad least = below.length(each.zero_crossing);
+    // As long as a parabola that high, at most.
+    if (i > 0 && i + 1 < all.size() && each.amplitude <= least && length * length <= 16 * least) {
+      const HalfCycle& next = all[++i];
+      Row& last = rows.back();
+      last.zero_crossing = next.zero_crossing, last.speed = next.speed;
+      if (next.amplitude > last.amplitude) last.amplitude = next.amplitude, last.peak_time = next.peak_time;
+      last.merged = true;
+      continue;
+    }
+    rows.push_back({each});
+  }
+  return rows;
+}
+
+std::string side_of(Wall wall) { return wall == Wall::left ? "left " : "right "; }
+std::string said(const Impact& each) {
+  return side_of(each.wall) + text(each.time, 17) + " (" + text(each.relative_velocity, 6) + ")";
+}
+std::string said(const Contact& each) {
+  return side_of(each.wall) + text(each.begin, 17) + " to " + text(each.end, 17);
+}
+std::string said(const HalfCycle& each) { return text(each.zero_crossing, 17); }
+template <class T>
+std::string said(const std::vector<T>& all, std::size_t i) {
+  return i < all.size() ? said(all[i]) : "none";
+}
+
+// Two answers side by side.
 struct Walk {
-  std::vector<std::array<std::size_t, 2>> impacts;  // of the first, of the second list
-  std::vector<std::size_t> skipped;                 // of the first list: jumped over by the second
+  std::vector<std::array<std::size_t, 2>> impacts;  // of the first, of the second answer
+  std::vector<bool> rough;           // of these: need not be listed, so that only the time counts
+  std::vector<std::size_t> skipped;  // of the first: jumped over by the second
   std::int64_t jumps = 0;
+  struct Pair {
+    Held mine, its;
+  };
+  std::vector<Pair> contacts;
+  std::vector<Row> my_rows, its_rows;
   std::optional<Quad> mismatch;  // the first time at which they are not the same
   std::string what;
-  void fail(Quad t, const std::string& why) {
-    if (!mismatch || t < *mismatch) mismatch = t, what = why;
+  template <class T>
+  void fail(Quad t, const std::string& which, std::size_t n, const T& mine, const T& its) {
+    if (mismatch && t >= *mismatch) return;
+    mismatch = t;
+    what = which + std::to_string(n) + ": " + said(its, n) + " where the oracle has " + said(mine, n);
   }
 };
 
-std::string said(const oracle::Impact& impact) {
-  return std::string(impact.wall == Wall::left ? "left " : "right ") + text(impact.time, 17) + " (" +
-         text(impact.relative_velocity, 6) + ")";
-}
+class Walker {
+ public:
+  Walker(const Answer& a, const Answer& b, const Setting& setting, const Negligible& below)
+      : a_(a), b_(b), setting_(setting), below_(below) {}
 
-Walk walk(const Events& a, const Events& b, const Negligible& below) {
-  Walk both;
-  std::size_t i = 0, j = 0;
-  const auto slow = [&](const oracle::Impact& each) {
-    return magnitude(each.relative_velocity) <= below.speed(each.time);
-  };
-  const auto window = [&](Quad t) { return std::max(Quad(1e-7L) * (1 + t), below.duration(t)); };
-  while (i < a.impacts.size() || j < b.impacts.size()) {
-    const bool have_a = i < a.impacts.size(), have_b = j < b.impacts.size();
-    // The same impact: the nearest in time that is left. How near is judged by the numbers' comparison.
-    if (have_a && have_b && a.impacts[i].wall == b.impacts[j].wall) {
-      const auto &p = a.impacts[i], &q = b.impacts[j];
-      const Quad apart = magnitude(p.time - q.time);
-      // In a chattering impacts are near each other: theirs must be nearer than the next one.
-      const bool next_is_nearer = i + 1 < a.impacts.size() &&
-                                  magnitude(a.impacts[i + 1].time - q.time) < apart &&
-                                  a.impacts[i + 1].wall == q.wall;
-      const bool alike = magnitude(p.relative_velocity - q.relative_velocity) <=
-                         magnitude(p.relative_velocity) / 2 + below.speed(p.time);
-      if (apart <= window(p.time) && !next_is_nearer && alike) {
-        both.impacts.push_back({i++, j++});
-        continue;
-      }
+  Walk walk() {
+    for (int damper = 0; damper < setting_.dampers(); ++damper) {
+      name_ = setting_.dampers() == 1 ? "" : "damper " + std::to_string(damper) + ' ';
+      my_contacts_ = contacts_of(a_, damper, setting_, below_);
+      its_contacts_ = contacts_of(b_, damper, setting_, below_);
+      walk_impacts(damper);
+      walk_contacts();
     }
-    if (have_a && slow(a.impacts[i])) {
-      ++i;
-      continue;
-    }
-    if (have_b && slow(b.impacts[j])) {
-      ++j;
-      continue;
-    }
-    // The rest of a complete chattering, that the other list jumps over.
-    if (have_a && a.impacts[i].accumulation) {
-      const Quad end = *a.impacts[i].accumulation;
-      if (!have_b || b.impacts[j].time > end - below.duration(end)) {
-        while (i < a.impacts.size() && a.impacts[i].accumulation && *a.impacts[i].accumulation == end)
-          both.skipped.push_back(i++);
-        ++both.jumps;
-        continue;
-      }
-    }
-    if (have_b && b.impacts[j].accumulation) {
-      const Quad end = *b.impacts[j].accumulation;
-      if (!have_a || a.impacts[i].time > end - below.duration(end)) {
-        while (j < b.impacts.size() && b.impacts[j].accumulation && *b.impacts[j].accumulation == end) ++j;
-        continue;
-      }
-    }
-    const Quad t =
-        !have_b || (have_a && a.impacts[i].time < b.impacts[j].time) ? a.impacts[i].time : b.impacts[j].time;
-    both.fail(t, "impact " + std::to_string(i) + ": " + (have_b ? said(b.impacts[j]) : "none") +
-                     " where the oracle has " + (have_a ? said(a.impacts[i]) : "none"));
-    break;
+    walk_rows();
+    return std::move(both_);
   }
-  for (std::size_t n = 0; n < std::max(a.contacts.size(), b.contacts.size()); ++n) {
-    const auto name = [&](const Events& e) {
-      return n < e.contacts.size() ? std::string(e.contacts[n].wall == Wall::left ? "left " : "right ") +
-                                         text(e.contacts[n].begin, 17) + " to " + text(e.contacts[n].end, 17)
-                                   : "none";
+
+ private:
+  using Impacts = std::vector<Impact>;
+  Quad window(Quad t) const { return std::max(Quad(1e-7L) * (1 + t), below_.duration(t)); }
+
+  // Number n of one damper's impacts need not be listed.
+  bool omitted(const Impacts& all, std::size_t n) const {
+    const Impact& each = all[n];
+    const Quad speed = magnitude(each.relative_velocity);
+    if (speed <= below_.speed(each.time)) return true;
+    if (!setting_.nested) return false;
+    if (!each.impulse) return true;
+    const Quad near = Quad(sticking_begin) * (1 + each.time);
+    // The end of a chattering that is cut short by another damper's.
+    if (n > 0 && speed <= Quad(1e-7L) && all[n - 1].wall == each.wall && each.time - all[n - 1].time <= near)
+      return true;
+    return speed <= Quad(chattering_speed) &&
+           std::any_of(my_contacts_.begin(), my_contacts_.end(), [&](const Contact& contact) {
+             return contact.wall == each.wall && each.time <= contact.end + near &&
+                    contact.begin - each.time <= Quad(chattering_time) * (1 + each.time);
+           });
+  }
+
+  void walk_impacts(int damper) {
+    std::vector<std::size_t> my_numbers, its_numbers;
+    const auto of_damper = [damper](const Answer& answer, std::vector<std::size_t>& numbers) {
+      Impacts its;
+      for (std::size_t i = 0; i < answer.impacts.size(); ++i)
+        if (answer.impacts[i].damper == damper) its.push_back(answer.impacts[i]), numbers.push_back(i);
+      return its;
     };
-    const bool have = n < a.contacts.size() && n < b.contacts.size();
-    const Quad t = n < a.contacts.size()
-                       ? (n < b.contacts.size() ? std::min(a.contacts[n].begin, b.contacts[n].begin)
-                                                : a.contacts[n].begin)
-                       : b.contacts[n].begin;
-    if (!have || a.contacts[n].wall != b.contacts[n].wall ||
-        magnitude(a.contacts[n].begin - b.contacts[n].begin) > window(t)) {
-      both.fail(t, "contact " + std::to_string(n) + ": " + name(b) + " where the oracle has " + name(a));
-      break;
-    }
-    const Quad end = std::min(a.contacts[n].end, b.contacts[n].end);
-    if (magnitude(a.contacts[n].end - b.contacts[n].end) > window(end)) {
-      both.fail(end, "contact " + std::to_string(n) + ": " + name(b) + " where the oracle has " + name(a));
-      break;
-    }
-  }
-  for (std::size_t n = 0; n < std::max(a.rows.size(), b.rows.size()); ++n) {
-    const auto name = [&](const Events& e) {
-      return n < e.rows.size() ? text(e.rows[n].zero_crossing, 17) : "none";
+    const Impacts mine = of_damper(a_, my_numbers), its = of_damper(b_, its_numbers);
+    std::size_t i = 0, j = 0;
+    // In a chattering impacts are near each other: the nearest is the same one.
+    const auto next_is_nearer = [](const Impacts& in, std::size_t n, const Impact& to) {
+      return n + 1 < in.size() && in[n + 1].wall == to.wall &&
+             magnitude(in[n + 1].time - to.time) < magnitude(in[n].time - to.time);
     };
-    const bool have = n < a.rows.size() && n < b.rows.size();
-    const Quad t = n < a.rows.size()
-                       ? (n < b.rows.size() ? std::min(a.rows[n].zero_crossing, b.rows[n].zero_crossing)
-                                            : a.rows[n].zero_crossing)
-                       : b.rows[n].zero_crossing;
-    if (!have || magnitude(a.rows[n].zero_crossing - b.rows[n].zero_crossing) > window(t)) {
-      both.fail(t, "crossing " + std::to_string(n) + ": " + name(b) + " where the oracle has " + name(a));
-      break;
+    while (i < mine.size() || j < its.size()) {
+      const bool have_mine = i < mine.size(), have_its = j < its.size();
+      if (setting_.nested && have_mine && have_its) {
+        if (omitted(mine, i) && next_is_nearer(mine, i, its[j])) {
+          ++i;
+          continue;
+        }
+        if (omitted(its, j) && next_is_nearer(its, j, mine[i])) {
+          ++j;
+          continue;
+        }
+      }
+      // How near is judged by the numbers' comparison.
+      if (have_mine && have_its && mine[i].wall == its[j].wall) {
+        const auto &p = mine[i], &q = its[j];
+        // In a chattering within another one alike impacts are nearer to each other.
+        const Quad w = magnitude(p.relative_velocity),
+                   off = magnitude(p.relative_velocity - q.relative_velocity);
+        const bool nested = setting_.nested;
+        const bool alike =
+            off <= (nested ? std::max(w * Quad(1e-3L), Quad(1e-14L)) : w / 2 + below_.speed(p.time));
+        const bool other_is_nearer = !nested && next_is_nearer(mine, i, q);
+        const Quad near = nested ? Quad(1e-6L) * (1 + p.time) : window(p.time);
+        if (magnitude(p.time - q.time) <= near && alike && !other_is_nearer) {
+          both_.rough.push_back(setting_.nested && omitted(mine, i) && omitted(its, j));
+          both_.impacts.push_back({my_numbers[i++], its_numbers[j++]});
+          continue;
+        }
+      }
+      if (have_mine && omitted(mine, i)) {
+        ++i;
+        continue;
+      }
+      if (have_its && omitted(its, j)) {
+        ++j;
+        continue;
+      }
+      // The rest of a complete chattering, that the other one jumps over.
+      const auto rest_of = [&](const Impacts& in, std::size_t n, const Impacts& other, std::size_t m) {
+        std::size_t end = n;
+        if (setting_.nested || n == in.size() || !in[n].accumulation) return end;
+        const Quad last = *in[n].accumulation;
+        if (m < other.size() && other[m].time <= last - below_.duration(last)) return end;
+        while (end < in.size() && in[end].accumulation && *in[end].accumulation == last) ++end;
+        return end;
+      };
+      if (const std::size_t end = rest_of(mine, i, its, j); end > i) {
+        for (; i < end; ++i) both_.skipped.push_back(my_numbers[i]);
+        ++both_.jumps;
+        continue;
+      }
+      if (const std::size_t end = rest_of(its, j, mine, i); end > j) {
+        j = end;
+        continue;
+      }
+      const Quad t = !have_its || (have_mine && mine[i].time < its[j].time) ? mine[i].time : its[j].time;
+      const Impacts one = have_mine ? Impacts{mine[i]} : Impacts{},
+                    other = have_its ? Impacts{its[j]} : Impacts{};
+      both_.fail(t, name_ + "impact " + std::to_string(i) + '.', 0, one, other);
+      return;
     }
   }
-  return both;
-}
+
+  void walk_contacts() {
+    for (std::size_t n = 0; n < std::max(my_contacts_.size(), its_contacts_.size()); ++n) {
+      const auto fail = [&](Quad t) { both_.fail(t, name_ + "contact ", n, my_contacts_, its_contacts_); };
+      if (n >= my_contacts_.size()) return fail(its_contacts_[n].begin);
+      if (n >= its_contacts_.size()) return fail(my_contacts_[n].begin);
+      const Held &p = my_contacts_[n], &q = its_contacts_[n];
+      const Quad begin = std::min(p.begin, q.begin), end = std::min(p.end, q.end);
+      const Quad near = setting_.nested ? Quad(1e-5L) * (1 + begin) : window(begin);
+      if (p.wall != q.wall || magnitude(p.begin - q.begin) > near) return fail(begin);
+      both_.contacts.push_back({p, q});
+      if (magnitude(p.end - q.end) > window(end)) return fail(end);
+    }
+  }
+
+  void walk_rows() {
+    both_.my_rows = rows_of(a_, below_), both_.its_rows = rows_of(b_, below_);
+    const auto &mine = both_.my_rows, &its = both_.its_rows;
+    for (std::size_t n = 0; n < std::max(mine.size(), its.size()); ++n) {
+      const auto fail = [&](Quad t) { both_.fail(t, "crossing ", n, mine, its); };
+      if (n >= mine.size()) return fail(its[n].zero_crossing);
+      if (n >= its.size()) return fail(mine[n].zero_crossing);
+      const Quad t = std::min(mine[n].zero_crossing, its[n].zero_crossing);
+      if (magnitude(mine[n].zero_crossing - its[n].zero_crossing) > window(t)) return fail(t);
+    }
+  }
+
+  const Answer &a_, &b_;
+  const Setting& setting_;
+  const Negligible& below_;
+  std::vector<Held> my_contacts_, its_contacts_;
+  std::string name_;
+  Walk both_;
+};
 
 // The largest error that rounding made so far, for each kind; for a rounding of 2^-53.
 class Growth {
  public:
   void take(Kind kind, Quad time, Quad difference) {
-    entries_[kind].push_back({time, magnitude(difference)});
+    if (kind < kinds_) entries_[kind].push_back({time, magnitude(difference)});
   }
-  void end_of_sustained_contact() {
+  void accumulate() {
     for (auto& each : entries_) {
       std::sort(each.begin(), each.end(), [](const Entry& a, const Entry& b) { return a.time < b.time; });
       Quad most = 0;
@@ -260,10 +419,6 @@ class Growth {
   std::array<std::vector<Entry>, kinds_> entries_;
 };
 
-struct Noise {
-  double size;
-  std::uint64_t seed;
-};
 // What the scene's own numbers are as large as, up to then.
 struct Sizes {
   std::vector<Quad> times;
@@ -277,148 +432,296 @@ struct Prediction {
   std::optional<Quad> ends;  // when nothing can be predicted beyond
   std::string why;
   std::vector<std::array<Quad, 4>> samples;  // growth at each sample
-  std::array<Quad, 10> totals{};             // growth of the energy balance's numbers at the end
+  std::vector<Quad> terms;                   // of the energy balance
+  void end_at(Quad t, const std::string& reason) {
+    if (!ends || t < *ends) ends = t, why = reason;
+  }
 };
 
-std::array<Quad, 10> totals_of(const Answer& answer) {
-  Quad losses = 0;
-  for (const oracle::Impact& each : answer.impacts) losses += each.loss;
-  return {
-      answer.final.kinetic, answer.final.spring, answer.final.wall,   answer.final.paper,  losses,
-      answer.contact_loss,  answer.chatter_loss, answer.viscous_work, answer.forcing_work, answer.end_time};
+// The predicted errors of one run.
+class Units {
+ public:
+  Units(const Setting& setting, const Prediction& prediction, const Run& run)
+      : setting_(setting), prediction_(prediction), rounding_(setting.accuracy.rounding) {
+    // Central differences take a step for an instant, at the release too.
+    if (const Cem* const cem = std::get_if<Cem>(&run.engine); cem && setting.accuracy.by_steps)
+      instant_ = cem->time_step.value_or(0);
+    for (const SceneDamper& each : setting.scene().dampers) {
+      masses_ += each.mass_ratio;
+      widest_ = std::max(widest_, Quad(each.clearance));
+    }
+  }
+  Quad growth(Kind kind, Quad t) const { return prediction_.growth(kind, t); }
+  Quad size(Kind kind, Quad t) const {
+    const auto& times = prediction_.sizes.times;
+    const auto place = std::size_t(std::lower_bound(times.begin(), times.end(), t) - times.begin());
+    const auto& most = prediction_.sizes.most[kind];
+    return most[std::min(place, most.size() - 1)];
+  }
+  // Whatever an engine adds up it may round, and x, v and the force so far are what the primary mass's motion
+  // is added up of; a secondary mass's place is so near a wall of the cavity as its clearance can be rounded.
+  Quad motion(Quad t) const {
+    const Quad omega_f = setting_.scene().force_frequency;
+    const Quad force = std::abs(setting_.scene().force_amplitude) * std::min(Quad(1), omega_f * t) /
+                       std::max(Quad(1), omega_f);
+    const Quad given = masses_ / (1 + masses_) * size(w_, t);  // by the secondary masses
+    return rounding_ * (force + given + size(x_, t) + size(v_, t));
+  }
+  Quad place() const { return rounding_ * widest_; }
+  Quad predicted(Kind kind, Quad t) const {
+    Quad unit = growth(kind, t);
+    if (kind == time_ || kind == peak_time_) return unit + rounding_ * t + instant_;
+    unit += motion(t);
+    if (kind == y_) unit += place();
+    if (kind == w_) unit += rounding_ * size(w_, t);
+    return unit;
+  }
+  // A place that is off by so much is met at this speed.
+  Quad met(Quad t, Quad place, Quad speed) const {
+    return predicted(time_, t) + (speed != 0 ? place / magnitude(speed) : Quad(0));
+  }
+  // The place, or at rigid walls the acceleration, that has to vanish at a contact's end.
+  Quad release(Quad t) const {
+    return setting_.question.walls == Walls::rigid ? motion(t) * (1 + 2 * setting_.scene().damping_ratio)
+                                                   : place();
+  }
+  Negligible negligible() const {
+    const auto of = [this](Kind kind) {
+      return [this, kind](Quad t) {
+        Quad unit = predicted(kind, t);
+        if (kind == x_) unit += predicted(time_, t) * size(v_, t);
+        if (kind == w_) unit += within_step(t);
+        return setting_.accuracy.operations * unit;
+      };
+    };
+    return {of(time_), of(w_), of(x_)};
+  }
+
+ private:
+  // What an acceleration gives in a step that was zero at its begin.
+  Quad within_step(Quad t) const {
+    const Scene& scene = setting_.scene();
+    const Quad grows = std::abs(scene.force_amplitude) * scene.force_frequency + size(x_, t) + size(v_, t);
+    return instant_ * instant_ * grows;
+  }
+  const Setting& setting_;
+  const Prediction& prediction_;
+  const Quad rounding_;
+  Quad instant_ = 0, masses_ = 0, widest_ = 1;
+};
+
+// A number of both answers; `unit`, the predicted error, is asked for in runs only.
+struct Number {
+  std::string what;
+  Kind kind;
+  Quad at, mine, its;
+  std::function<Quad(const Units&)> unit;
+};
+using Take = std::function<void(const Number&)>;
+
+std::string row_index(std::size_t i) { return "[" + std::to_string(i) + "]"; }
+bool same_peak(const HalfCycle& p, const HalfCycle& q) {  // two peaks of one height may change places
+  return magnitude(p.peak_time - q.peak_time) < Quad(1e-4L) * (1 + p.peak_time);
 }
 
-Prediction predict(Question question, const Accuracy& accuracy) {
-  const double rounding = accuracy.rounding, probe = accuracy.noise, predictable = accuracy.predictable;
+// All numbers of the events that both answers have.
+void numbers_of_events(const Answer& a, const Answer& b, const Walk& both, const Setting& setting,
+                       const Take& take) {
+  const auto beyond = [&](Quad t) { return both.mismatch && t >= *both.mismatch; };
+  for (std::size_t n = 0; n < both.impacts.size(); ++n) {
+    const auto [i, j] = both.impacts[n];
+    const Impact &p = a.impacts[i], &q = b.impacts[j];
+    if (beyond(p.time)) continue;
+    const Quad t = p.time, w = p.relative_velocity;
+    if (both.rough[n]) {
+      take({"impact time" + row_index(j), unknown, t, t, q.time,
+            [=](const Units&) { return Quad(sticking_begin / operations) * (1 + t); }});
+      continue;
+    }
+    const auto met = [=](const Units& units) { return units.met(t, units.place(), w); };
+    take({"impact time" + row_index(j), time_, t, t, q.time, met});
+    take({"relative velocity" + row_index(j), w_, t, w, q.relative_velocity,
+          [=](const Units& units) { return units.predicted(w_, t); }});
+    // It goes on while the time errs.
+    take({"displacement" + row_index(j), x_, t, p.displacement, q.displacement,
+          [=](const Units& units) { return units.predicted(x_, t) + units.size(v_, t) * met(units); }});
+    take({"impact loss" + row_index(j), loss_, t, p.loss, q.loss, [=, loss = p.loss](const Units& units) {
+            const Quad by_speed = w != 0 ? loss / magnitude(w) : Quad(0);
+            return units.growth(loss_, t) + 2 * by_speed * units.predicted(w_, t);
+          }});
+  }
+  const auto speed_at = [&](const Held& contact) {
+    for (const Impact& each : a.impacts)
+      if (each.damper == contact.damper && each.time == contact.begin) return each.relative_velocity;
+    return Quad(0);
+  };
+  // The speed of another damper's impact that throws one off its rigid wall.
+  const auto thrown_off = [&](const Held& contact) {
+    for (const Impact& each : a.impacts)
+      if (setting.nested && each.damper != contact.damper && each.time == contact.end)
+        return each.relative_velocity;
+    return Quad(0);
+  };
+  // Where the engine jumps to the end of a chattering it is off by up to its tolerance of what it jumps over.
+  const auto jump = [&](const Held& contact) {
+    Quad rest = 0;
+    for (const std::size_t i : both.skipped)
+      if (a.impacts[i].damper == contact.damper &&
+          magnitude(*a.impacts[i].accumulation - contact.begin) <= Quad(1e-9L) * (1 + contact.begin))
+        rest = std::max(rest, contact.begin - a.impacts[i].time);
+    return rest * Quad(Restitution{}.accumulation_tolerance);
+  };
+  for (std::size_t n = 0; n < both.contacts.size(); ++n) {
+    const auto& [p, q] = both.contacts[n];
+    const Quad begin = p.begin, end = p.end;
+    if (beyond(begin)) continue;
+    const std::string which = " of damper " + std::to_string(p.damper) + row_index(n);
+    if (setting.nested)
+      take({"contact begin" + which, unknown, begin, begin, q.begin,
+            [=, within = p.within || q.within](const Units&) {
+              return Quad((within ? 30 : 3) * sticking_begin / operations) * (1 + begin);
+            }});
+    else
+      take({"contact begin" + which, time_, begin, begin, q.begin,
+            [=, speed = speed_at(p), jumped = jump(p)](const Units& units) {
+              return units.met(begin, units.place(), speed) + jumped;
+            }});
+    if (beyond(end)) continue;
+    take({"contact end" + which, time_, end, end, q.end,
+          [=, speed = p.end_speed, struck = thrown_off(p)](const Units& units) {
+            return struck != 0 ? units.met(end, units.place(), struck)
+                               : units.met(end, units.release(end), speed);
+          }});
+  }
+  for (std::size_t n = 0; n < std::min(both.my_rows.size(), both.its_rows.size()); ++n) {
+    const Row &p = both.my_rows[n], &q = both.its_rows[n];
+    const Quad t = p.zero_crossing;
+    if (beyond(t)) break;
+    take({"zero crossing" + row_index(n), time_, t, t, q.zero_crossing,
+          [=, speed = p.speed](const Units& units) { return units.met(t, units.motion(t), speed); }});
+    take({"amplitude" + row_index(n), x_, t, p.amplitude, q.amplitude,
+          [=](const Units& units) { return units.predicted(x_, t); }});
+    // The release and the turn right after it may be the peak, too: see judge_other_peaks.
+    if (same_peak(p, q) && (n > 0 || q.peak_time != 0))
+      take({"peak time" + row_index(n), peak_time_, p.peak_time, p.peak_time, q.peak_time,
+            [=](const Units& units) { return units.predicted(peak_time_, t) + units.predicted(time_, t); }});
+  }
+}
 
+Prediction predict(const Setting& setting) {
+  const auto [rounding, probe, predictable, most, by_steps] = setting.accuracy;
+  struct Noise {
+    double size;
+    std::uint64_t seed;
+  };
   // The second is the first with the opposite sign: where rounding alone decides, as of a wall that is just
   // touched, one of both decides otherwise.
-  const std::array<Noise, 4> noises{{{1e-24, 1}, {-1e-24, 1}, {1e-24, 2}, {probe, 3}}};
+  std::vector<Noise> noises{{1e-24, 1}, {-1e-24, 1}, {probe, 3}};
+  if (setting.dampers() == 1) noises.push_back({1e-24, 2});
   Prediction result;
-  const double end = *question.scene.until_time;
+  Question question = setting.question;
+  const Scene& scene = setting.scene();
+  const double end = *scene.until_time;
   question.samples = sample_times(end);
   result.answer = answer_to(question);
   const Answer& plain = result.answer;
-  result.growth.slack = end / samples_of_a_run;
-  const auto end_at = [&](Quad t, const std::string& why) {
-    if (!result.ends || t < *result.ends) result.ends = t, result.why = why;
-  };
-  if (plain.stop == Stop::effort) {
-    end_at(plain.end_time, "the oracle's effort");
+  result.growth.slack = end / sample_count;
+  if (!plain.complete()) {
+    result.end_at(plain.end_time, "the oracle's effort");
     return result;
   }
   // The mass may be on a wall and off it again within the finest step.
-  if (accuracy.by_steps) {
-    for (const oracle::Contact& each : plain.contacts)
-      if (each.end - each.begin < first_step(question.scene) / finer_steps.back() / 4 && each.end < end)
-        end_at(each.begin, "a contact shorter than a step");
+  for (const Contact& each : plain.contacts)
+    if (by_steps && each.end - each.begin < first_step(scene) / finer_steps.back() / 4 && each.end < end)
+      result.end_at(each.begin, "a contact shorter than a step");
+  // Impacts on left and right walls that follow each other within rounding of their times: whether a mass
+  // rests on its wall when the next one comes, or is a hair from it, is then no property of the scene in
+  // double precision.
+  for (std::size_t i = 1; setting.nested && i < plain.impacts.size(); ++i) {
+    const Impact &before = plain.impacts[i - 1], &each = plain.impacts[i];
+    if (each.wall != before.wall && each.time > before.time &&
+        each.time - before.time <= Quad(4 * rounding) * (1 + each.time))
+      result.end_at(before.time, "rounding decides: left and right walls at one instant");
   }
   result.samples.resize(question.samples.size());
+  const auto largest = [](const std::vector<Quad>& all) {
+    Quad most_of_all = 0;
+    for (const Quad each : all) most_of_all = std::max(most_of_all, magnitude(each));
+    return most_of_all;
+  };
 
   // Sizes so far, of each kind.
-  Quad x = magnitude(question.scene.x0), v = magnitude(question.scene.v0),
-       y = magnitude(question.scene.damper().y0), w = magnitude(question.scene.damper().w0);
+  Quad x = magnitude(scene.x0), v = magnitude(scene.v0), y = 0, w = 0;
   for (std::size_t i = 0; i < plain.samples.size(); ++i) {
     const Sample& each = plain.samples[i];
     x = std::max(x, magnitude(each.x)), v = std::max(v, magnitude(each.v));
-    y = std::max(y, magnitude(each.y)), w = std::max(w, magnitude(each.w));
+    y = std::max(y, largest(each.y)), w = std::max(w, largest(each.w));
     const Quad t = question.samples[i];
     result.sizes.times.push_back(t);
     const std::array<Quad, kinds_> now{t, t, x, v, y, w, v * v + x * x};
     for (int k = 0; k < kinds_; ++k) result.sizes.most[k].push_back(now[k]);
   }
 
+  const std::vector<Term> terms = terms_of(plain, setting);
+  result.terms.resize(terms.size());
+  // A scene that needs all the effort needs a little more when it is changed.
+  question.most_steps += question.most_steps / 10, question.most_impacts += question.most_impacts / 10;
   for (const Noise& noise : noises) {
     question.noise = noise.size;
     question.seed = noise.seed;
     const Answer other = answer_to(question);
     const Quad size = magnitude(noise.size), per_rounding = Quad(rounding) / size;
     const std::size_t samples = std::min(plain.samples.size(), other.samples.size());
-    if (other.stop == Stop::effort) end_at(other.end_time, "the oracle's effort");
+    if (!other.complete()) result.end_at(other.end_time, "the oracle's effort");
+    // Events: what is negligible is so by this noise alone.
+    std::vector<Quad> places, speeds;  // largest differences so far
     for (std::size_t i = 0; i < samples; ++i) {
       const Quad t = question.samples[i];
       const Sample &a = plain.samples[i], &b = other.samples[i];
-      const std::array<Quad, 4> off{magnitude(a.x - b.x) * per_rounding, magnitude(a.v - b.v) * per_rounding,
-                                    magnitude(a.y - b.y) * per_rounding, magnitude(a.w - b.w) * per_rounding};
-      for (int k = 0; k < 4; ++k) result.samples[i][k] = std::max(result.samples[i][k], off[k]);
+      std::array<Quad, 4> off{magnitude(a.x - b.x), magnitude(a.v - b.v), 0, 0};
+      for (std::size_t n = 0; n < a.y.size(); ++n) {
+        off[2] = std::max(off[2], magnitude(a.y[n] - b.y[n]));
+        off[3] = std::max(off[3], magnitude(a.w[n] - b.w[n]));
+      }
+      places.push_back(std::max(off[0] + off[2], i > 0 ? places.back() : Quad(0)));
+      speeds.push_back(std::max(off[1] + off[3], i > 0 ? speeds.back() : Quad(0)));
+      for (int k = 0; k < 4; ++k)
+        result.samples[i][k] = std::max(result.samples[i][k], off[k] * per_rounding);
       // A contact's velocities change fast: off by as much as the time of its begin, they are so only there.
       if (a.in_contact || b.in_contact) continue;
-      result.growth.take(x_, t, off[0]);
-      result.growth.take(v_, t, off[1]);
-      result.growth.take(y_, t, off[2]);
-      result.growth.take(w_, t, off[3]);
+      for (int k = 0; k < 4; ++k) result.growth.take(Kind(x_ + k), t, off[k] * per_rounding);
     }
-    // Events: what is negligible is so by this noise alone.
-    const auto grown = [&](Kind kind) {
-      return [&, kind](Quad t) {
-        Quad most = 0;
-        for (std::size_t i = 0; i < samples; ++i) {
-          const Sample &a = plain.samples[i], &b = other.samples[i];
-          most = std::max(most, kind == w_ ? magnitude(a.w - b.w) + magnitude(a.v - b.v)
-                                           : magnitude(a.x - b.x) + magnitude(a.y - b.y));
-          if (Quad(question.samples[i]) > t) break;
-        }
-        return 1000 * (most + size * (t + 1));
+    const auto grown = [&](const std::vector<Quad>& so_far) {
+      return [&](Quad t) {
+        const auto after = std::upper_bound(question.samples.begin(), question.samples.end(), t,
+                                            [](Quad time, double sample) { return time < Quad(sample); });
+        const auto i = std::min(std::size_t(after - question.samples.begin()), samples - 1);
+        return 1000 * ((samples > 0 ? so_far[i] : Quad(0)) + size * (t + 1));
       };
     };
-    const Negligible below{grown(x_), grown(w_), grown(x_)};
-    Events a = events_of(plain), b = events_of(other);
-    simplify(a, below), simplify(b, below);
-    const Walk both = walk(a, b, below);
-    if (both.mismatch) end_at(*both.mismatch, "rounding decides: " + both.what);
-    for (const auto& [i, j] : both.impacts) {
-      const auto &p = a.impacts[i], &q = b.impacts[j];
-      if (both.mismatch && p.time >= *both.mismatch) break;
-      result.growth.take(time_, p.time, (p.time - q.time) * per_rounding);
-      result.growth.take(w_, p.time, (p.relative_velocity - q.relative_velocity) * per_rounding);
-      result.growth.take(x_, p.time, (p.displacement - q.displacement) * per_rounding);
-      result.growth.take(loss_, p.time, (p.loss - q.loss) * per_rounding);
-    }
-    for (std::size_t i = 0; i < std::min(a.contacts.size(), b.contacts.size()); ++i) {
-      const auto &p = a.contacts[i], &q = b.contacts[i];
-      if (both.mismatch && p.end >= *both.mismatch) break;
-      result.growth.take(time_, p.begin, (p.begin - q.begin) * per_rounding);
-      result.growth.take(time_, p.end, (p.end - q.end) * per_rounding);
-    }
-    for (std::size_t i = 0; i < std::min(a.rows.size(), b.rows.size()); ++i) {
-      const auto &p = a.rows[i], &q = b.rows[i];
-      if (both.mismatch && p.zero_crossing >= *both.mismatch) break;
-      result.growth.take(time_, p.zero_crossing, (p.zero_crossing - q.zero_crossing) * per_rounding);
-      result.growth.take(x_, p.zero_crossing, (p.amplitude - q.amplitude) * per_rounding);
-      // Two peaks of one height may change places.
-      if (magnitude(p.peak_time - q.peak_time) < Quad(1e-4L) * (1 + p.peak_time))
-        result.growth.take(peak_time_, p.peak_time, (p.peak_time - q.peak_time) * per_rounding);
-    }
-    const auto mine = totals_of(plain), others = totals_of(other);
-    for (std::size_t i = 0; i < mine.size(); ++i)
-      result.totals[i] = std::max(result.totals[i], magnitude(mine[i] - others[i]) * per_rounding);
+    const Negligible below{grown(places), grown(speeds), grown(places)};
+    const Walk both = Walker(plain, other, setting, below).walk();
+    if (both.mismatch) result.end_at(*both.mismatch, "rounding decides: " + both.what);
+    numbers_of_events(plain, other, both, setting, [&](const Number& each) {
+      result.growth.take(each.kind, each.at, (each.mine - each.its) * per_rounding);
+    });
+    const std::vector<Term> others = terms_of(other, setting);
+    for (std::size_t i = 0; i < terms.size(); ++i)
+      result.terms[i] = std::max(result.terms[i], magnitude(terms[i].value - others[i].value) * per_rounding);
   }
-  result.growth.end_of_sustained_contact();
+  result.growth.accumulate();
   // Until when is an error small?
-  for (const Kind kind : {x_, v_, y_, w_})
+  for (const Kind kind : {time_, x_, v_, y_, w_})
     for (const auto& entry : result.growth.entries(kind)) {
-      const auto at = std::lower_bound(result.sizes.times.begin(), result.sizes.times.end(), entry.time);
-      if (result.sizes.times.empty()) break;
-      const std::size_t i =
-          std::min<std::size_t>(at - result.sizes.times.begin(), result.sizes.times.size() - 1);
-      if (entry.difference <= predictable * result.sizes.most[kind][i]) continue;
-      end_at(entry.time, "rounding has grown");
-      break;
-    }
-  for (const auto& entry : result.growth.entries(time_))
-    if (entry.difference > predictable * (1 + entry.time)) {
-      end_at(entry.time, "rounding has grown");
+      const auto& times = result.sizes.times;
+      const auto at = std::size_t(std::lower_bound(times.begin(), times.end(), entry.time) - times.begin());
+      const Quad size =
+          kind == time_ ? 1 + entry.time : result.sizes.most[kind][std::min(at, times.size() - 1)];
+      if (entry.difference <= predictable * size) continue;
+      result.end_at(entry.time, "rounding has grown");
       break;
     }
   return result;
-}
-
-Question question_of(const Scene& scene, const Engine& engine) {
-  Question question;
-  question.scene = scene;
-  question.walls = std::holds_alternative<Restitution>(engine) ? Walls::rigid : Walls::compliant;
-  if (const Exact* const exact = std::get_if<Exact>(&engine)) question.calibration = exact->calibration;
-  return question;
 }
 
 // Is told of each number that is compared, and of what is there and should not be, or the other way about.
@@ -427,302 +730,265 @@ struct Judge {
   std::function<void(const std::string& what)> differ;
 };
 
-// The times at which the oracle is asked: the run's samples and, for rows that have two peaks of one height,
-// those of its peaks.
-std::vector<double> times_of(const Run& run, double end) {
-  std::vector<double> times = run.history->time;
-  for (const double t : run.half_cycles->peak_time)
-    if (t >= 0 && t <= end) times.push_back(t);
-  std::sort(times.begin(), times.end());
-  return times;
+// The order of the impacts in a run, and the times of those that coincide.
+void judge_order(const Run& run, const Answer& answer, Walls walls, const Judge& judge) {
+  const impact_damper::Impacts& impacts = *run.impacts;
+  const auto one_instant = [&](std::size_t i, std::size_t j) {
+    const auto is = [&](const Impact& p, std::size_t n) {
+      const Quad w = p.relative_velocity;
+      return p.damper == impacts.damper[n] && magnitude(p.time - impacts.time[n]) <= Quad(1e-9L) &&
+             magnitude(w - impacts.relative_velocity[n]) <= Quad(1e-3L) * magnitude(w);
+    };
+    for (std::size_t n = 0; n + 1 < answer.impacts.size(); ++n)
+      for (std::size_t m = n + 1;
+           m < answer.impacts.size() && answer.impacts[m].time == answer.impacts[n].time; ++m)
+        if (is(answer.impacts[n], j) && is(answer.impacts[m], i)) return true;
+    return false;
+  };
+  for (std::size_t i = 0; i + 1 < impacts.time.size(); ++i) {
+    const double t = impacts.time[i], next = impacts.time[i + 1];
+    if (t < next || (t == next && (run.scene.dampers.size() == 1 ||
+                                   impacts.damper[i] < impacts.damper[i + 1] || !one_instant(i, i + 1))))
+      continue;
+    judge.differ("impacts " + std::to_string(i) + " and the next are not in order: damper " +
+                 std::to_string(impacts.damper[i]) + " at " + text(t, 17));
+  }
+  // Impacts on rigid walls that the oracle has at one instant, and that are far from all others, have one
+  // time.
+  for (std::size_t i = 0; walls == Walls::rigid && i + 1 < answer.impacts.size(); ++i) {
+    const Impact &p = answer.impacts[i], &q = answer.impacts[i + 1];
+    if (p.time != q.time || p.wall != q.wall || magnitude(p.relative_velocity) < Quad(1e-4L)) continue;
+    std::vector<double> times;
+    for (std::size_t n = 0; n < impacts.time.size(); ++n)
+      if ((impacts.damper[n] == p.damper || impacts.damper[n] == q.damper) &&
+          magnitude(impacts.time[n] - p.time) <= Quad(1e-9L))
+        times.push_back(impacts.time[n]);
+    if (times.size() == 2 && times[0] != times[1])
+      judge.differ("impacts of one instant have two times: " + said(p) + " and " + said(q));
+  }
 }
 
-// Judges everything in `run`; returns how many impacts were compared.
-std::int64_t judge_run(const Run& run, Question question, const Prediction& prediction,
-                       const Accuracy& accuracy, const Judge& judge) {
-  const double rounding = accuracy.rounding;
-  const Scene& scene = run.scene;
-  const double end = *scene.until_time;
-  const std::vector<double> times = times_of(run, end);
-  question.samples = times;
-  const Answer answer = answer_to(question);
-  const auto at = [&](double t) -> const Sample& {
-    return answer.samples.at(std::lower_bound(times.begin(), times.end(), t) - times.begin());
-  };
-  std::int64_t impacts = 0;
-
-  const Growth& growth = prediction.growth;
-  // Whatever an engine adds up it may round, and x, v and the force so far are what the primary mass's motion
-  // is added up of; the secondary mass's place is so near a wall of the cavity at 0 or 1 as 1 can be rounded.
-  const auto size = [&](Kind kind, Quad t) {
-    const auto& times_so_far = prediction.sizes.times;
-    const auto place = std::lower_bound(times_so_far.begin(), times_so_far.end(), t) - times_so_far.begin();
-    const auto& most = prediction.sizes.most[kind];
-    return most[std::min<std::size_t>(place, most.size() - 1)];
-  };
-  const auto rounded_motion = [&](Quad t) {
-    const Quad omega_f = scene.force_frequency;
-    const Quad force =
-        std::abs(scene.force_amplitude) * std::min(Quad(1), omega_f * t) / std::max(Quad(1), omega_f);
-    const Quad given =
-        scene.damper().mass_ratio / (1 + scene.damper().mass_ratio) * size(w_, t);  // by the secondary mass
-    return Quad(rounding) * (force + given + size(x_, t) + size(v_, t));
-  };
-  // Central differences take a step for an instant, at the release too.
-  const Cem* const cem = std::get_if<Cem>(&run.engine);
-  const double instant = cem ? cem->time_step.value_or(0) : 0;
-  const auto predicted = [&](Kind kind, Quad t) {
-    Quad unit = growth(kind, t);
-    if (kind == time_ || kind == peak_time_) return unit + Quad(rounding) * t + instant;
-    unit += rounded_motion(t);
-    if (kind == y_) unit += Quad(rounding);
-    if (kind == w_) unit += Quad(rounding) * size(w_, t);
-    return unit;
-  };
-  // A place that is off by a rounding is met at this speed.
-  const auto met = [&](Quad t, Quad place, Quad speed) {
-    return predicted(time_, t) + (speed != 0 ? place / magnitude(speed) : Quad(0));
-  };
-  // What an acceleration gives in a step that was zero at its begin.
-  const auto within_step = [&](Quad t) {
-    const Quad grows = std::abs(scene.force_amplitude) * scene.force_frequency + size(x_, t) + size(v_, t);
-    return Quad(instant) * instant * grows;
-  };
-  const auto negligible = [&](Kind kind) {
-    return [&, kind](Quad t) {
-      Quad unit = predicted(kind, t);
-      if (kind == x_) unit += predicted(time_, t) * size(v_, t);
-      if (kind == w_) unit += within_step(t);
-      return accuracy.operations * unit;
-    };
-  };
-  const Negligible below{negligible(time_), negligible(w_), negligible(x_)};
-
-  Events mine = events_of(answer), its = events_of(run);
-  const auto row_index = [](std::size_t i) { return "[" + std::to_string(i) + "]"; };
-  simplify(mine, below), simplify(its, below);
-  const Walk both = walk(mine, its, below);
-  if (both.mismatch) judge.differ(both.what);
-  const Quad until = both.mismatch ? *both.mismatch : Quad(end);
-
-  std::vector<Quad> crossings;
-  for (const HalfCycle& each : mine.rows) crossings.push_back(each.zero_crossing);
-  for (const auto& [i, j] : both.impacts) {
-    const oracle::Impact& p = mine.impacts[i];
-    if (p.time > until) break;
-    ++impacts;
-    judge.number("impact time" + row_index(j), run.impacts->time[j], p.time,
-                 met(p.time, rounding, p.relative_velocity));
-    judge.number("relative velocity" + row_index(j), run.impacts->relative_velocity[j], p.relative_velocity,
-                 predicted(w_, p.time));
-    // It goes on while the time errs.
-    judge.number("displacement" + row_index(j), run.impacts->displacement[j], p.displacement,
-                 predicted(x_, p.time) + size(v_, p.time) * met(p.time, rounding, p.relative_velocity));
-    if (!both.mismatch) {
-      const Quad speed = magnitude(p.relative_velocity);
-      const Quad relative_to_loss = speed > 0 ? p.loss / speed : Quad(0);
-      judge.number("impact loss" + row_index(j), run.energy->impact_loss[j], p.loss,
-                   growth(loss_, p.time) + 2 * relative_to_loss * predicted(w_, p.time));
+// The counts of the rows as they are recorded: impacts before the crossing, but for those that coincide with
+// it.
+void judge_counts(const Run& run, const Negligible& below, const Judge& judge) {
+  const HalfCycles& rows = *run.half_cycles;
+  const std::size_t count = run.scene.dampers.size();
+  if (rows.dampers.size() != count)
+    return judge.differ("half cycles have impacts of " + std::to_string(rows.dampers.size()) + " dampers");
+  std::vector<std::int64_t> before(count, 0);
+  for (std::size_t row = 0; row < rows.zero_crossing.size(); ++row) {
+    std::int64_t all = 0;
+    const double crossing = rows.zero_crossing[row], near = double(below.duration(crossing));
+    for (std::size_t damper = 0; damper < count; ++damper) {
+      all += rows.dampers[damper].impacts.at(row);
+      before[damper] += rows.dampers[damper].impacts[row];
+      std::int64_t sure = 0, possible = 0;
+      for (std::size_t n = 0; n < run.impacts->time.size(); ++n) {
+        if (run.impacts->damper[n] != std::int32_t(damper)) continue;
+        sure += run.impacts->time[n] < crossing - near;
+        possible += run.impacts->time[n] <= crossing + near;
+      }
+      if (before[damper] < sure || before[damper] > possible)
+        judge.differ("damper " + std::to_string(damper) + ": impacts up to row " + std::to_string(row) +
+                     " are " + std::to_string(before[damper]) + ", true " + std::to_string(sure));
     }
-    // The half cycle, unless the impact coincides with a crossing.
+    if (all != rows.impacts[row])
+      judge.differ("impacts of row " + std::to_string(row) + " are not the sum of the dampers'");
+  }
+}
+
+// The half cycle of each impact, unless the impact coincides with a crossing.
+void judge_half_cycles(const Run& run, const Answer& answer, const Walk& both, const Units& units,
+                       const Negligible& below, const Judge& judge) {
+  const auto &mine = both.my_rows, &its = both.its_rows;
+  std::vector<Quad> crossings;
+  for (const Row& each : mine) crossings.push_back(each.zero_crossing);
+  for (std::size_t n = 0; n < both.impacts.size(); ++n) {
+    const auto [i, j] = both.impacts[n];
+    const Impact& p = answer.impacts[i];
     const Quad near = below.duration(p.time);
     const std::size_t row = std::lower_bound(crossings.begin(), crossings.end(), p.time) - crossings.begin();
     const bool coincides = (row < crossings.size() && crossings[row] - p.time <= near) ||
                            (row > 0 && p.time - crossings[row - 1] <= near);
     // Of a row that was three phases and amplitudes are those of one of them.
-    const auto was_three = [row](const Events& events) {
-      return row < events.merged.size() && events.merged[row];
-    };
-    if (coincides || both.mismatch || was_three(mine) || was_three(its)) continue;
+    const bool was_three = row < mine.size() && (mine[row].merged || its[row].merged);
+    if (coincides || was_three || both.rough[n]) continue;
     if (row == crossings.size()) {
       if (run.impacts->phase_deg[j] || run.impacts->amplitude[j])
         judge.differ("impact" + row_index(j) + " has a phase or an amplitude in an unfinished half cycle");
       continue;
     }
     if (run.impacts->amplitude[j])
-      judge.number("impact's amplitude" + row_index(j), *run.impacts->amplitude[j], mine.rows[row].amplitude,
-                   predicted(x_, crossings[row]));
+      judge.number("impact's amplitude" + row_index(j), *run.impacts->amplitude[j], mine[row].amplitude,
+                   units.predicted(x_, crossings[row]));
     else
       judge.differ("impact" + row_index(j) + " has no amplitude");
     if (bool(run.impacts->phase_deg[j]) != (row > 0)) {
       judge.differ("impact" + row_index(j) + ": phase there or not");
     } else if (row > 0) {
       const Quad length = crossings[row] - crossings[row - 1];
+      const auto crossed = [&](std::size_t at) {
+        return units.met(crossings[at], units.motion(crossings[at]), mine[at].speed);
+      };
       judge.number(
           "phase" + row_index(j), *run.impacts->phase_deg[j], 180 * (p.time - crossings[row - 1]) / length,
           360 / length *
-              (met(p.time, rounding, p.relative_velocity) +
-               met(crossings[row], rounded_motion(crossings[row]), mine.rows[row].speed) +
-               met(crossings[row - 1], rounded_motion(crossings[row - 1]), mine.rows[row - 1].speed)));
+              (units.met(p.time, units.place(), p.relative_velocity) + crossed(row) + crossed(row - 1)));
     }
   }
-  const auto speed_at = [&](Quad begin) {
-    for (const oracle::Impact& each : mine.impacts)
-      if (each.time == begin) return each.relative_velocity;
-    return Quad(0);
-  };
-  // The place, or at rigid walls the acceleration, that has to vanish at a contact's end.
-  const auto release = [&](Quad t) {
-    return question.walls == Walls::rigid ? rounded_motion(t) * (1 + 2 * scene.damping_ratio)
-                                          : Quad(rounding);
-  };
-  // Where the engine jumps to the end of a chattering it is off by up to its tolerance of what it jumps over.
-  const auto jump = [&](Quad begin) {
-    const Restitution* const rigid = std::get_if<Restitution>(&run.engine);
-    Quad rest = 0;
-    for (const std::size_t i : both.skipped)
-      if (magnitude(*mine.impacts[i].accumulation - begin) <= below.duration(begin))
-        rest = std::max(rest, begin - mine.impacts[i].time);
-    return rigid ? rest * Quad(rigid->accumulation_tolerance) : Quad(0);
-  };
-  for (std::size_t i = 0; i < std::min(mine.contacts.size(), its.contacts.size()); ++i) {
-    if (mine.contacts[i].begin > until) break;
-    judge.number("contact begin" + row_index(i), double(its.contacts[i].begin), mine.contacts[i].begin,
-                 met(mine.contacts[i].begin, rounding, speed_at(mine.contacts[i].begin)) +
-                     jump(mine.contacts[i].begin));
-    if (mine.contacts[i].end > until) break;
-    judge.number("contact end" + row_index(i), double(its.contacts[i].end), mine.contacts[i].end,
-                 met(mine.contacts[i].end, release(mine.contacts[i].end), mine.contacts[i].end_speed));
-  }
+}
+
+// Where two peaks of a row have one height, or the release and the turn right after it, either will do: |x|
+// is as large there.
+void judge_other_peaks(const Walk& both, Question question, const Units& units, const Negligible& below,
+                       const Judge& judge) {
+  std::vector<std::size_t> rows;
   Quad last_crossing = 0;
-  for (std::size_t i = 0; i < std::min(mine.rows.size(), its.rows.size()); ++i) {
-    const HalfCycle &p = mine.rows[i], &q = its.rows[i];
-    if (p.zero_crossing > until) break;
-    judge.number("zero crossing" + row_index(i), double(q.zero_crossing), p.zero_crossing,
-                 met(p.zero_crossing, rounded_motion(p.zero_crossing), p.speed));
-    judge.number("amplitude" + row_index(i), double(q.amplitude), p.amplitude,
-                 predicted(x_, p.zero_crossing));
-    // Where two peaks of a row have one height, or the release and the turn right after it, either will do.
-    const bool at_release = i == 0 && q.peak_time == 0;
-    const bool another = at_release || magnitude(p.peak_time - q.peak_time) > Quad(1e-4L) * (1 + p.peak_time);
-    if (another && q.peak_time >= last_crossing - below.duration(last_crossing) &&
-        q.peak_time <= p.zero_crossing)
-      judge.number("|x| at peak time" + row_index(i), double(p.amplitude),
-                   magnitude(at(double(q.peak_time)).x), predicted(x_, p.zero_crossing));
-    else
-      judge.number("peak time" + row_index(i), double(q.peak_time), p.peak_time,
-                   predicted(peak_time_, p.zero_crossing) + predicted(time_, p.zero_crossing));
-    last_crossing = p.zero_crossing;
-  }
-  // The counts of the rows as they are recorded: impacts before the crossing, but for those that coincide
-  // with it.
-  for (std::size_t i = 0; i < run.half_cycles->impacts.size() && !both.mismatch; ++i) {
-    const double crossing = run.half_cycles->zero_crossing[i];
-    const double near = double(below.duration(crossing));
-    std::int64_t sure = 0, possible = 0;
-    std::int64_t before = 0;
-    for (std::size_t n = 0; n <= i; ++n) before += run.half_cycles->impacts[n];
-    for (const double t : run.impacts->time) {
-      sure += t < crossing - near;
-      possible += t <= crossing + near;
+  question.samples.clear();
+  for (std::size_t n = 0; n < std::min(both.my_rows.size(), both.its_rows.size()); ++n) {
+    const Row &p = both.my_rows[n], &q = both.its_rows[n];
+    if (both.mismatch && p.zero_crossing >= *both.mismatch) break;
+    const Quad crossing = std::exchange(last_crossing, p.zero_crossing);
+    if (same_peak(p, q) && (n > 0 || q.peak_time != 0)) continue;
+    if (q.peak_time < crossing - below.duration(crossing) || q.peak_time > p.zero_crossing) {
+      judge.number("peak time" + row_index(n), double(q.peak_time), p.peak_time,
+                   units.predicted(peak_time_, p.zero_crossing) + units.predicted(time_, p.zero_crossing));
+      continue;
     }
-    if (before < sure || before > possible)
-      judge.differ("impacts up to row " + std::to_string(i) + ": " + std::to_string(before) + ", true " +
-                   std::to_string(sure));
+    rows.push_back(n);
+    question.samples.push_back(double(q.peak_time));
   }
+  if (rows.empty()) return;
+  const Answer answer = answer_to(question);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Row& p = both.my_rows[rows[i]];
+    judge.number("|x| at peak time" + row_index(rows[i]), double(p.amplitude),
+                 magnitude(answer.samples.at(i).x), units.predicted(x_, p.zero_crossing));
+  }
+}
 
-  for (std::size_t i = 0; i < run.history->time.size(); ++i) {
-    const double t = run.history->time[i];
-    const Sample& truth = at(t);
+void judge_samples(const Run& run, const Prediction& prediction, const Units& units, const Negligible& below,
+                   const Setting& setting, const Judge& judge) {
+  const History& history = *run.history;
+  if (history.time != sample_times(*run.scene.until_time))
+    return judge.differ("other samples than were asked for");
+  for (std::size_t i = 0; i < history.time.size(); ++i) {
+    const Quad t = history.time[i];
+    const Sample& truth = prediction.answer.samples.at(i);
+    const std::array<Quad, 4>& grown = prediction.samples[i];
     const std::string where = " at " + text(t, 17);
-    const auto grown = [&](int k) {
-      return i < prediction.samples.size() ? prediction.samples[i][k] : Quad(0);
-    };
     // An impact within rounding of a sample: before or after it?
+    const Quad near = std::max(below.duration(t), setting.nested ? Quad(sticking_begin) * (1 + t) : Quad(0));
     bool coincides = false;
-    for (const auto& each : mine.impacts)
-      coincides = coincides || magnitude(each.time - t) <= below.duration(t);
-    judge.number("x" + where, run.history->x[i], truth.x, grown(0) + predicted(x_, t));
-    judge.number("y" + where, run.history->dampers[0].y[i], truth.y, grown(2) + predicted(y_, t));
-    if (coincides) continue;
-    judge.number("v" + where, run.history->v[i], truth.v, grown(1) + predicted(v_, t));
-    judge.number("w" + where, run.history->dampers[0].w[i], truth.w, grown(3) + predicted(w_, t));
+    for (const Impact& each : prediction.answer.impacts)
+      coincides = coincides || magnitude(each.time - t) <= near;
+    judge.number("x" + where, history.x[i], truth.x, grown[0] + units.predicted(x_, t));
+    if (!coincides) judge.number("v" + where, history.v[i], truth.v, grown[1] + units.predicted(v_, t));
+    for (std::size_t n = 0; n < truth.y.size(); ++n) {
+      judge.number("y" + where, history.dampers[n].y.at(i), truth.y[n], grown[2] + units.predicted(y_, t));
+      if (!coincides)
+        judge.number("w" + where, history.dampers[n].w.at(i), truth.w[n], grown[3] + units.predicted(w_, t));
+    }
   }
-  if (run.history->time != sample_times(end)) judge.differ("other samples than were asked for");
+}
 
-  // The energy balance. Each term may be off by roundings of the largest.
+// Each term of the energy balance may be off by roundings of the largest.
+void judge_energy(const Run& run, const Prediction& prediction, const Walk& both, const Setting& setting,
+                  const Judge& judge) {
   const EnergyBalance& balance = *run.energy;
-  Quad listed = 0, recorded = 0;
-  for (const oracle::Impact& each : answer.impacts) listed += each.loss;
-  for (const double each : balance.impact_loss) recorded += each;
-  const auto& totals = prediction.totals;
-  const Quad all = answer.initial.total() + answer.forcing_turnover + answer.viscous_work;
-  const Quad floor = Quad(rounding) * all;
-  const auto energies = [&](const std::string& which, const impact_damper::Energy& e,
-                            const oracle::Energy& truth, bool last) {
-    const auto grown = [&](int i) { return last ? totals[i] + floor : Quad(0); };
-    judge.number(which + " kinetic energy", e.kinetic, truth.kinetic, grown(0));
-    judge.number(which + " spring energy", e.spring, truth.spring, grown(1));
-    judge.number(which + " wall energy", e.wall, truth.wall, grown(2));
-    judge.number(which + " paper's energy", e.paper, truth.paper, grown(3));
-  };
-  energies("initial", balance.initial, answer.initial, false);
-  energies("final", balance.final, answer.final, true);
-  if (cem) {
-    // A contact that begins without speed may begin with an impact here: only the sum is known.
-    judge.number("all losses", double(recorded + Quad(balance.contact_loss)), listed + answer.contact_loss,
-                 totals[4] + totals[5] + floor);
-  } else {
-    judge.number("loss of all impacts", double(recorded + Quad(balance.bounce_down_loss)),
-                 listed + answer.chatter_loss, totals[4] + totals[6] + floor);
-    judge.number("contact loss", balance.contact_loss, answer.contact_loss, totals[5] + floor);
+  const Answer& answer = prediction.answer;
+  const Quad rounding = setting.accuracy.rounding;
+  const Quad floor = rounding * (answer.initial.total() + answer.turnover + answer.viscous_work);
+  const std::vector<Term> mine = terms_of(answer, setting), its = terms_of(balance, setting);
+  for (std::size_t i = 0; i < its.size(); ++i) {
+    Quad unit = mine[i].initial ? Quad(0) : prediction.terms[i] + floor;
+    // omega_f t is rounded, too, which no noise of the state stands for: the force is off by as many
+    // roundings as it has radians.
+    if (mine[i].name == "forcing work")
+      unit += rounding * answer.turnover * run.scene.force_frequency * *run.scene.until_time;
+    judge.number(mine[i].name, double(its[i].value), mine[i].value, unit);
   }
-  judge.number("viscous work", balance.viscous_work, answer.viscous_work, totals[7] + floor);
-  // omega_f t is rounded, too, which no noise of the state stands for: the force is off by as many roundings
-  // as it has radians.
-  const Quad radians = question.scene.force_frequency * end;
-  judge.number("forcing work", balance.forcing_work, answer.forcing_work,
-               totals[8] + floor + Quad(rounding) * answer.forcing_turnover * radians);
-  judge.number("residual", balance.residual, 0, Quad(rounding) * 10);
-  if (question.walls == Walls::rigid && !both.mismatch) {
-    Quad jumped = answer.chatter_loss;
-    for (const std::size_t i : both.skipped) jumped += mine.impacts[i].loss;
-    // Each complete chattering is one jump, but for those in which all is negligible; a plastic impact is
-    // none.
-    std::int64_t complete = 0;
-    for (std::size_t i = 0; i < mine.impacts.size(); ++i)
-      complete +=
-          mine.impacts[i].accumulation &&
-          (i + 1 == mine.impacts.size() || mine.impacts[i + 1].accumulation != mine.impacts[i].accumulation);
-    if (balance.bounce_downs < both.jumps || balance.bounce_downs > complete)
-      judge.differ("bounce-downs: " + std::to_string(balance.bounce_downs) + ", true " +
-                   std::to_string(both.jumps));
-    judge.number("bounce-down loss", balance.bounce_down_loss, jumped, totals[4] + totals[6] + floor);
-  }
-  judge.number("end time", run.end_time, end, 0);
+  judge.number("residual", balance.residual, 0, rounding * 10);
+  if (setting.question.walls != Walls::rigid || both.mismatch || setting.nested) return;
+  Quad jumped = answer.chatter_loss(), grown = floor;
+  for (const std::size_t i : both.skipped) jumped += answer.impacts[i].loss;
+  for (std::size_t i = 0; i < mine.size(); ++i)
+    if (mine[i].name == "loss of all impacts") grown += prediction.terms[i];
+  // Each complete chattering is one jump, but for those in which all is negligible; a plastic impact is none.
+  std::int64_t complete = 0;
+  const auto& impacts = answer.impacts;
+  for (std::size_t i = 0; i < impacts.size(); ++i)
+    complete += impacts[i].accumulation &&
+                (i + 1 == impacts.size() || impacts[i + 1].accumulation != impacts[i].accumulation);
+  if (balance.bounce_downs < both.jumps || balance.bounce_downs > complete)
+    judge.differ("bounce-downs: " + std::to_string(balance.bounce_downs) + ", true " +
+                 std::to_string(both.jumps));
+  judge.number("bounce-down loss", balance.bounce_down_loss, jumped, grown);
+}
+
+// Judges everything in `run`.
+void judge_run(const Run& run, const Setting& setting, const Prediction& prediction, const Judge& judge,
+               Comparison& result) {
+  const Scene& scene = run.scene;
+  const std::size_t count = scene.dampers.size(), with_energy = run.energy->dampers.size();
+  if (run.history->dampers.size() != count || (with_energy != count && (count > 1 || with_energy > 0)))
+    return judge.differ("energies or history of another number of dampers");
+  judge.number("end time", run.end_time, *scene.until_time, 0);
   if (run.stop_reason != StopReason::time)
     judge.differ("stopped by " + std::string(name_of(run.stop_reason)));
-  return impacts;
+  const Answer &answer = prediction.answer, recorded = answer_of(run);
+  const Units units(setting, prediction, run);
+  const Negligible below = units.negligible();
+  const Walk both = Walker(answer, recorded, setting, below).walk();
+  if (both.mismatch) judge.differ(both.what);
+  result.impacts += std::int64_t(both.impacts.size());
+  numbers_of_events(answer, recorded, both, setting, [&](const Number& each) {
+    judge.number(each.what, double(each.its), each.mine, each.unit(units));
+  });
+  if (!both.mismatch) {
+    judge_half_cycles(run, answer, both, units, below, judge);
+    judge_counts(run, below, judge);
+  }
+  judge_other_peaks(both, setting.question, units, below, judge);
+  judge_order(run, answer, setting.question.walls, judge);
+  judge_samples(run, prediction, units, below, setting, judge);
+  judge_energy(run, prediction, both, setting, judge);
 }
 
 // The longest part of the scene that can be predicted; shortens it to that.
-Prediction predict_what_can_be(Scene& scene, Question& question, const Accuracy& accuracy,
-                               Comparison& result) {
-  result.asked = *scene.until_time;
-  Prediction prediction = predict(question, accuracy);
+Prediction predict_what_can_be(Setting& setting, Comparison& result) {
+  std::optional<double>& until = setting.question.scene.until_time;
+  result.asked = *until;
+  Prediction prediction = predict(setting);
   for (int i = 0; i < 4 && prediction.ends; ++i) {
     result.ended_by = prediction.why;
     // Half a sample earlier: what ends it, and its noise, stay outside.
-    const double end = double(*prediction.ends) - *scene.until_time / samples_of_a_run / 2;
+    const double end = double(*prediction.ends) - *until / sample_count / 2;
     if (!(end > 0)) return prediction;
-    scene.until_time = question.scene.until_time = end;
-    prediction = predict(question, accuracy);
+    until = end;
+    prediction = predict(setting);
   }
-  if (!prediction.ends) result.until = *scene.until_time;
+  if (!prediction.ends) result.until = *until;
   return prediction;
 }
 
 Record everything(double end) {
   Record record;
   record.impacts = record.contacts = record.energy = true;
-  record.history = {{0, end, samples_of_a_run}};
+  record.history = {{0, end, sample_count}};
   return record;
+}
+Run simulated(const Scene& scene, const Engine& engine, const Record& record, bool as_list) {
+  if (!as_list || !has_one_damper(scene)) return simulate(scene, engine, record);
+  Run run = in_its_own_units(simulate(list_of_one(scene), engine, record));
+  run.scene = scene;
+  return run;
 }
 
 // With a quarter of the step every error is to be a sixteenth, once steps are short enough for the scene:
 // they are shortened twice where that is not so. A column's largest error stands for it.
-void compare_by_order(const Scene& scene, const Question& question, const Prediction& prediction, Cem engine,
-                      Comparison& result) {
+void compare_by_order(const Setting& setting, const Prediction& prediction, Cem engine, Comparison& result) {
+  const Scene& scene = setting.scene();
   for (const double finer : finer_steps) {
     // By what the step is divided by, and by column: the error itself, and in units of the predicted one.
     std::map<int, std::map<std::string, std::array<double, 2>>> errors;
@@ -742,7 +1008,7 @@ void compare_by_order(const Scene& scene, const Question& question, const Predic
         by_unit = std::max(by_unit, double(error / unit));
       };
       judge.differ = [&](const std::string& what) { result.differences.push_back(what); };
-      result.impacts += judge_run(run, question, prediction, central_differences, judge);
+      judge_run(run, setting, prediction, judge, result);
     }
     for (const auto& [column, at_full] : errors[1]) {
       const auto& at_quarter = errors[4][column];
@@ -765,7 +1031,8 @@ void compare_by_order(const Scene& scene, const Question& question, const Predic
 
 // That the run ends where it is told to: by an amplitude, a number of half cycles, a number of impacts. Asked
 // in the middle, where nothing coincides.
-void compare_stops(Scene scene, Engine engine, const Prediction& prediction, const Judge& judge) {
+void compare_stops(const Setting& setting, Engine engine, bool as_list, const Prediction& prediction,
+                   const Judge& judge) {
   const Answer& answer = prediction.answer;
   const auto time = [&](const std::string& what, const Run& run, StopReason reason, Quad truth) {
     if (run.stop_reason != reason)
@@ -790,9 +1057,9 @@ void compare_stops(Scene scene, Engine engine, const Prediction& prediction, con
     const auto first = std::find_if(rows.begin(), rows.end(),
                                     [&](const HalfCycle& each) { return each.amplitude < Quad(amplitude); });
     if (spread(amplitude)) {
-      Scene stopped = scene;
+      Scene stopped = setting.scene();
       stopped.until_amplitude = amplitude;
-      time("amplitude " + text(amplitude, 17), simulate(stopped, engine, {}), StopReason::amplitude,
+      time("amplitude " + text(amplitude, 17), simulated(stopped, engine, {}, as_list), StopReason::amplitude,
            first->zero_crossing);
     }
   }
@@ -802,58 +1069,178 @@ void compare_stops(Scene scene, Engine engine, const Prediction& prediction, con
   const Budget before = budget();
   if (tall && row + 1 < rows.size()) {
     budget().max_half_cycles = std::int64_t(row) + 1;
-    time("half cycle " + std::to_string(row), simulate(scene, engine, {}), StopReason::half_cycle_budget,
-         rows[row].zero_crossing);
+    time("half cycle " + std::to_string(row), simulated(setting.scene(), engine, {}, as_list),
+         StopReason::half_cycle_budget, rows[row].zero_crossing);
     budget() = before;
   }
   // The run ends with the impact that would be one too many.
   const auto& impacts = answer.impacts;
   const std::size_t most = impacts.size() / 2;
-  const auto plain = [](const oracle::Impact& each) {
-    return !each.accumulation && magnitude(each.relative_velocity) > Quad(1e-6L);
+  const auto plain = [](const Impact& each) {
+    return each.impulse && !each.accumulation && magnitude(each.relative_velocity) > Quad(1e-6L);
   };
   if (most < impacts.size() &&
       std::all_of(impacts.begin(), impacts.begin() + std::ptrdiff_t(most) + 1, plain)) {
     budget().max_impacts = std::int64_t(most);
-    time("impact " + std::to_string(most), simulate(scene, engine, {}), StopReason::impact_budget,
-         impacts[most].time);
+    time("impact " + std::to_string(most), simulated(setting.scene(), engine, {}, as_list),
+         StopReason::impact_budget, impacts[most].time);
   }
 }
 
-}  // namespace
+Setting setting_of(const Scene& scene, const Engine& engine, const Comparing& how) {
+  Setting setting{{}, std::holds_alternative<Cem>(engine) ? central_differences : closed_forms};
+  Question& question = setting.question;
+  question.scene = scene;
+  question.walls = std::holds_alternative<Restitution>(engine) ? Walls::rigid : Walls::compliant;
+  if (const Exact* const exact = std::get_if<Exact>(&engine)) question.calibration = exact->calibration;
+  if (how.as_list || scene.dampers.size() > 1) {
+    question.most_impacts = 8000;
+    question.most_steps = question.walls == Walls::rigid ? 32'000 : 5'000;
+    setting.accuracy.predictable = 1e-10;
+  }
+  if (how.most_steps > 0) question.most_steps = how.most_steps;
+  setting.nested = question.walls == Walls::rigid && scene.dampers.size() > 1;
+  return setting;
+}
 
-Comparison compare(const Scene& asked, const Engine& engine) {
-  Comparison result;
-  Scene scene = asked;
-  Question question = question_of(scene, engine);
-  const Accuracy& accuracy = std::holds_alternative<Cem>(engine) ? central_differences : closed_forms;
-  const Prediction prediction = predict_what_can_be(scene, question, accuracy, result);
-  if (result.until == 0) return result;
+// The run of the program or, if there is none, of the engine.
+void compare_with(const Setting& setting, const Prediction& prediction, const Engine& engine,
+                  const Comparing& how, const Program& program, Comparison& result) {
+  const Answer& answer = prediction.answer;
+  for (std::size_t i = 0; i + 1 < answer.impacts.size(); ++i)
+    result.joint_impacts += answer.impacts[i].time == answer.impacts[i + 1].time;
+  for (std::size_t i = 0; i + 1 < answer.contacts.size(); ++i)
+    result.joint_contacts += answer.contacts[i].begin < answer.contacts[i + 1].end &&
+                             answer.contacts[i + 1].begin < answer.contacts[i].end;
   Judge judge;
   judge.differ = [&](const std::string& what) { result.differences.push_back(what); };
   // `predicted`: by growth. A value that was rounded once is off by that, too.
   judge.number = [&](const std::string& what, double value, Quad truth, Quad predicted) {
     ++result.numbers;
     const Quad error = magnitude(Quad(value) - truth);
-    const Quad unit = predicted + Quad(accuracy.rounding) * magnitude(truth) + Quad(1e-300L);
+    const Quad unit = predicted + Quad(setting.accuracy.rounding) * magnitude(truth) + Quad(1e-300L);
     const double ratio = double(error / unit);
     if (!(ratio <= result.worst)) result.worst = ratio, result.worst_what = what;
-    if (!(ratio <= accuracy.operations))
+    if (!(ratio <= how.allowed))
       judge.differ(what + " is " + text(value, 17) + ", true " + text(truth, 20) + ", off by " +
                    text(error, 3) + ", predicted " + text(unit, 3));
   };
   try {
     if (const Cem* const cem = std::get_if<Cem>(&engine)) {
-      compare_by_order(scene, question, prediction, *cem, result);
+      compare_by_order(setting, prediction, *cem, result);
     } else {
-      result.impacts =
-          judge_run(simulate(scene, engine, everything(result.until)), question, prediction, accuracy, judge);
-      compare_stops(scene, engine, prediction, judge);
+      const Scene& scene = setting.scene();
+      judge_run(program ? program(scene) : oracle::simulated(scene, engine, how.as_list), setting, prediction,
+                judge, result);
+      if (!program) compare_stops(setting, engine, how.as_list, prediction, judge);
     }
   } catch (const std::exception& error) {
     judge.differ(std::string("throws: ") + error.what());
   }
-  return result;
+}
+
+}  // namespace
+
+Run simulated(const Scene& scene, const Engine& engine, bool as_list) {
+  return simulated(scene, engine, everything(*scene.until_time), as_list);
+}
+
+std::vector<Comparison> compare(const Scene& asked, const Engine& engine, const Comparing& how,
+                                const std::vector<Program>& programs) {
+  Comparison result;
+  Setting setting = setting_of(asked, engine, how);
+  const Prediction prediction = predict_what_can_be(setting, result);
+  std::vector<Comparison> all(programs.size(), result);
+  if (result.until == 0) return all;
+  for (std::size_t i = 0; i < programs.size(); ++i)
+    compare_with(setting, prediction, engine, how, programs[i], all[i]);
+  return all;
+}
+Comparison compare(const Scene& scene, const Engine& engine, const Comparing& how) {
+  return compare(scene, engine, how, {Program()}).front();
+}
+
+Run run_of_oracle(const Scene& scene, Walls walls, Fault fault, int samples) {
+  Question question;
+  question.scene = scene;
+  question.scene.until_amplitude.reset();
+  question.fault = fault;
+  question.walls = walls;
+  question.most_impacts = 8'000, question.most_steps = 32'000;
+  question.samples = sample_times(*scene.until_time, samples);
+  Answer answer = answer_to(question);
+  std::stable_sort(answer.impacts.begin(), answer.impacts.end(), [](const Impact& a, const Impact& b) {
+    return std::pair(double(a.time), a.damper) < std::pair(double(b.time), b.damper);
+  });
+  const std::size_t count = scene.dampers.size();
+  Run run;
+  run.scene = scene;
+  run.end_time = double(answer.end_time);
+  run.impacts.emplace(), run.contacts.emplace(), run.half_cycles.emplace(), run.history.emplace();
+  EnergyBalance& energy = run.energy.emplace();
+  energy.dampers.resize(count);
+  for (std::size_t n = 0; n < count; ++n) {
+    const DamperEnergy& its = answer.dampers[n];
+    energy.dampers[n] = {double(its.initial),     double(its.final), 0, double(its.contact_loss), 0,
+                         double(its.chatter_loss)};
+  }
+  HalfCycles& rows = *run.half_cycles;
+  rows.dampers.resize(count);
+  for (const HalfCycle& each : answer.half_cycles) {
+    rows.zero_crossing.push_back(double(each.zero_crossing));
+    rows.peak_time.push_back(double(each.peak_time));
+    rows.amplitude.push_back(double(each.amplitude));
+  }
+  rows.impacts.resize(rows.amplitude.size());
+  for (HalfCycles::Damper& its : rows.dampers) its.impacts.resize(rows.amplitude.size());
+  for (const Impact& each : answer.impacts) {
+    run.impacts->time.push_back(double(each.time));
+    run.impacts->wall.push_back(each.wall);
+    run.impacts->damper.push_back(each.damper);
+    run.impacts->relative_velocity.push_back(double(each.relative_velocity));
+    run.impacts->displacement.push_back(double(each.displacement));
+    energy.impact_loss.push_back(double(each.loss));
+    energy.dampers[each.damper].impact_loss += double(each.loss);
+    const auto row = std::size_t(
+        std::lower_bound(answer.half_cycles.begin(), answer.half_cycles.end(), each.time,
+                         [](const HalfCycle& half_cycle, Quad t) { return half_cycle.zero_crossing < t; }) -
+        answer.half_cycles.begin());
+    auto& amplitude = run.impacts->amplitude.emplace_back();
+    auto& phase = run.impacts->phase_deg.emplace_back();
+    if (row == rows.amplitude.size()) continue;
+    ++rows.impacts[row], ++rows.dampers[each.damper].impacts[row];
+    amplitude = rows.amplitude[row];
+    if (row == 0) continue;
+    const Quad begin = answer.half_cycles[row - 1].zero_crossing;
+    phase = double(180 * (each.time - begin) / (answer.half_cycles[row].zero_crossing - begin));
+  }
+  for (const Contact& each : answer.contacts) {
+    run.contacts->begin.push_back(double(each.begin));
+    run.contacts->end.push_back(double(each.end));
+    run.contacts->damper.push_back(each.damper);
+    run.contacts->wall.push_back(each.wall);
+  }
+  // A fault may end the answer before the last of them.
+  run.history->time.assign(question.samples.begin(),
+                           question.samples.begin() + std::ptrdiff_t(answer.samples.size()));
+  run.history->dampers.resize(count);
+  for (const Sample& each : answer.samples) {
+    run.history->x.push_back(double(each.x));
+    run.history->v.push_back(double(each.v));
+    for (std::size_t n = 0; n < count; ++n) {
+      run.history->dampers[n].y.push_back(double(each.y[n]));
+      run.history->dampers[n].w.push_back(double(each.w[n]));
+    }
+  }
+  const auto rounded = [](const Energy& now) {
+    return impact_damper::Energy{double(now.kinetic), double(now.spring), double(now.wall),
+                                 double(now.paper)};
+  };
+  energy.initial = rounded(answer.initial), energy.final = rounded(answer.final);
+  energy.contact_loss = double(answer.contact_loss());
+  energy.bounce_down_loss = double(answer.chatter_loss());
+  energy.viscous_work = double(answer.viscous_work), energy.forcing_work = double(answer.forcing_work);
+  return run;
 }
 
 }  // namespace oracle

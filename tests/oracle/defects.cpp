@@ -1,11 +1,14 @@
 // Scenes in which an engine was wrong once, each held against the oracle in all that is recorded.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "compare.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/simulate.hpp"
+#include "lists.hpp"
 
 using namespace impact_damper;
 
@@ -18,6 +21,21 @@ void agrees(const Scene& scene, const Engine& engine, double until = 1) {
   CHECK(result.numbers > 100);
   CHECK(result.differences.size() == 0);
   for (std::size_t i = 0; i < result.differences.size() && i < 3; ++i) MESSAGE(result.differences[i]);
+}
+
+// By the engine of lists.
+oracle::Comparison agrees_as_list(const Scene& scene, const Engine& engine,
+                                  double allowed = oracle::operations) {
+  CAPTURE(oracle::text_of(scene));
+  const oracle::Comparison result = oracle::compare(scene, engine, {.as_list = true, .allowed = allowed});
+  CHECK(result.until == *scene.until_time);
+  CHECK(result.differences.size() == 0);
+  if (!result.differences.empty()) MESSAGE(result.differences[0]);
+  return result;
+}
+
+SceneDamper damper(double nu, double e, double clearance, double y0, double w0) {
+  return {.mass_ratio = nu, .restitution = e, .clearance = clearance, .y0 = y0, .w0 = w0};
 }
 
 Scene scene_until(double time) {
@@ -249,4 +267,62 @@ TEST_CASE("at rest on a wall with y'' = y''' = 0 the masses stick or part as the
             }
           }
   CHECK(sticks == 48);
+}
+
+TEST_CASE("lists in which the restitution engine was wrong once") {
+  const auto list_agrees = [](Scene scene, const std::vector<SceneDamper>& dampers) {
+    scene.until_time = 3;
+    scene.damping_ratio = 0;
+    scene.dampers = dampers;
+    agrees_as_list(scene, Restitution{});
+  };
+  Scene scene;
+  // One that rests on the other wall takes part in an impact, and is not met by it.
+  scene.x0 = 0;
+  list_agrees(scene, {damper(2, 0, 0.5, 0.5, -1), damper(0.02, 0, 2, 2, 0)});
+  // Those that leave a wall together from rest return to it together.
+  scene.x0 = -0.5, scene.v0 = 1;
+  list_agrees(scene, {damper(2, 1, 2, 2, 0), damper(2, 1, 2, 2, 0)});
+  scene.x0 = 2.0356854212966793, scene.v0 = -4.7602761214230815;
+  list_agrees(scene, {damper(0.0127, 1, 5, 0, 0), damper(0.0063, 0.5, 5, 0, 0)});
+  // Chattering of one throws the other, which rests, off its wall: briefly if it is light.
+  scene.x0 = 6, scene.v0 = 0;
+  list_agrees(scene, {damper(1e-6, 0.6, 1, 1, 1e-4), damper(10, 0, 1, 1, 0)});
+  list_agrees(scene, {damper(0.1, 0, 1, 1, 1e-3), damper(0.3, 0.7, 1, 1, 0)});
+  list_agrees(scene, {damper(5, 0.9, 1, 1, 1e-5), damper(4, 0.1, 1, 1, 0)});
+  scene.x0 = -0.5, scene.v0 = 1;
+  // The return to the wall that a mass has left from rest, while another one flies.
+  scene.x0 = -0.5, scene.v0 = 1;
+  list_agrees(scene, {damper(2, 1, 2, 2, 0), damper(1, 0.25, 2, 0, 1)});
+}
+
+TEST_CASE("lists in which the exact engine was wrong once") {
+  const auto list_agrees = [](double x0, const std::vector<SceneDamper>& dampers, double end = 1) {
+    Scene scene;
+    scene.x0 = x0, scene.until_time = end;
+    scene.dampers = dampers;
+    for (int order = 0; order < 2; ++order) {
+      agrees_as_list(scene, Exact{});
+      std::ranges::reverse(scene.dampers);
+    }
+  };
+  // Two that begin with impacts, while a third is pressed against its wall.
+  list_agrees(1, {damper(0.1, 0.6, 1, 1, 0), damper(0.2, 0.6, 1, 0, -1), damper(0.3, 0.6, 1, 0, -1)});
+  // One at rest that the wall force of another's impact at the beginning presses to its wall; or takes off.
+  list_agrees(0.5, {damper(0.1, 0.6, 1, 0, 0), damper(0.2, 0.6, 1, 1, 1)});
+  list_agrees(0.5, {damper(0.1, 0.6, 1, 1, 0), damper(0.2, 0.6, 1, 1, 1)});
+  // One that rests on its wall until another's impact presses it there: with an impact of no speed.
+  list_agrees(0, {damper(0.1, 0.6, 1, 0, 0), damper(0.2, 0.6, 1, 0.5, 1)});
+  // Small bounces of one while another is in contact: to the digits of the distance, not of x.
+  SceneDamper stiff = damper(0.05, 1, 1, 0, 0), soft = damper(2, 1, 1, 0, 0);
+  stiff.wall_stiffness = 150'000, soft.wall_stiffness = 50;
+  list_agrees(-4, {stiff, soft}, 0.1);
+}
+
+TEST_CASE("slow bounces keep the digits of their distance while another mass presses its wall") {
+  Scene scene;
+  scene.x0 = -1, scene.damping_ratio = 1, scene.until_time = 0.1;
+  scene.dampers = {{.mass_ratio = 1e-6, .restitution = 1, .clearance = 0.5, .wall_stiffness = 100},
+                   {.mass_ratio = 1e-6, .restitution = 0.6, .clearance = 1, .wall_stiffness = 12.5}};
+  CHECK(agrees_as_list(scene, Exact{}, 20).impacts > 100);
 }

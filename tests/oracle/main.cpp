@@ -1,13 +1,14 @@
 // The program of the oracle.
 //
-//   impact-damper-oracle [--kind KIND] [--engine ENGINE] [--seed N] [--count M] [--threads N] [--results
-//   FILE] impact-damper-oracle [--engine ENGINE] [--scene FILE] [the scene options of `impact-damper run`]
+//   impact-damper-oracle [--dampers one|several] [--kind KIND] [--engine ENGINE] [--seed N] [--count M]
+//                        [--threads N] [--results FILE]
+//   impact-damper-oracle [--engine ENGINE] [--scene FILE] [the scene options of `impact-damper run`]
 //
 // The first form compares the scenes of seeds N to N + M - 1 with the oracle: KIND random or round, ENGINE
-// exact, restitution or cem, all of both if not given. It prints every scene that differs, with the command
-// line that runs it, and a table; FILE gets the same as a section of a Markdown page. The second form prints
-// the oracle's own run of one scene, one event a line, and where the engine differs. Exit code 1 if anything
-// differs, 2: usage.
+// exact, restitution or cem, all of both if not given; of several dampers KIND aimed, too, and ENGINE exact
+// or restitution. It prints every scene that differs, with what runs it, and a table; FILE gets the same as a
+// section of a Markdown page. The second form prints the oracle's own run of one scene, one event a line, and
+// where the engine differs. Exit code 1 if anything differs, 2: usage.
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -19,6 +20,7 @@
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/scene_file.hpp"
+#include "lists.hpp"
 #include "print.hpp"
 #include "scenes.hpp"
 
@@ -31,7 +33,8 @@ using namespace impact_damper;
 constexpr double least_share = 0.5;
 
 struct Options {
-  std::vector<std::string> kinds{"random", "round"}, engines{"exact", "restitution", "cem"};
+  bool several = false;
+  std::vector<std::string> kinds{"random", "round", "aimed"}, engines{"exact", "restitution", "cem"};
   std::int64_t first = 1, count = 100;
   Threads threads = 2;
   std::string results;
@@ -45,6 +48,17 @@ Engine engine_named(const std::string& name) {
   return Exact{};
 }
 
+Scene scene_of(const std::string& kind, const std::string& engine, bool several, std::uint64_t seed) {
+  const bool rigid = engine == Restitution::name;
+  if (!several) {
+    const Scene scene = kind == "random" ? random_scene(seed, rigid) : round_scene(seed, rigid);
+    return engine == Cem::name ? within_steps(scene) : scene;
+  }
+  if (kind == "random") return rigid ? random_list(seed) : random_compliant_list(seed);
+  if (kind == "round") return rigid ? round_list(seed) : round_compliant_list(seed);
+  return rigid ? aimed_list(seed) : aimed_compliant_list(seed);
+}
+
 std::string rounded(double number, int digits = 2) {
   char out[32];
   std::snprintf(out, sizeof out, "%.*g", digits, number);
@@ -53,22 +67,19 @@ std::string rounded(double number, int digits = 2) {
 
 struct Row {
   std::string kind, engine;
-  std::int64_t scenes = 0, failed = 0, numbers = 0, impacts = 0, whole = 0;
+  std::int64_t scenes = 0, failed = 0, numbers = 0, impacts = 0, whole = 0, together = 0;
   double share = 0, worst = 0;
   std::string worst_what;
   std::vector<std::string> failures;
 };
 
 Row compare_all(const std::string& kind, const std::string& engine, const Options& options) {
-  const bool rigid = engine == Restitution::name;
   std::vector<Comparison> all(static_cast<std::size_t>(options.count));
-  const auto scene_of = [&](std::int64_t i) {
-    const auto seed = static_cast<std::uint64_t>(options.first + i);
-    const Scene scene = kind == "random" ? random_scene(seed, rigid) : round_scene(seed, rigid);
-    return engine == Cem::name ? within_steps(scene) : scene;
+  const auto scene = [&](std::int64_t i) {
+    return scene_of(kind, engine, options.several, static_cast<std::uint64_t>(options.first + i));
   };
   for_each_index(options.count, options.threads, [&](std::int64_t i) {
-    all[static_cast<std::size_t>(i)] = compare(scene_of(i), engine_named(engine));
+    all[static_cast<std::size_t>(i)] = compare(scene(i), engine_named(engine), {.as_list = options.several});
   });
   Row row{.kind = kind, .engine = engine, .scenes = options.count, .worst_what = {}, .failures = {}};
   for (std::int64_t i = 0; i < options.count; ++i) {
@@ -76,6 +87,7 @@ Row compare_all(const std::string& kind, const std::string& engine, const Option
     const std::string seed = std::to_string(options.first + i);
     row.numbers += each.numbers;
     row.impacts += each.impacts;
+    row.together += each.joint_impacts + each.joint_contacts;
     row.whole += each.until == each.asked;
     row.share += each.until / each.asked / double(options.count);
     if (each.differences.empty()) {
@@ -83,9 +95,10 @@ Row compare_all(const std::string& kind, const std::string& engine, const Option
       continue;
     }
     ++row.failed;
-    Scene scene = scene_of(i);
-    scene.until_time = each.until;
-    std::string text = "seed " + seed + ": impact-damper run --engine " + engine + options_of(scene) + "\n";
+    Scene failed = scene(i);
+    failed.until_time = each.until;
+    std::string text = "seed " + seed + ": " + engine + " " +
+                       (options.several ? text_of(failed) : options_of(failed) + "\n");
     for (std::size_t n = 0; n < std::min<std::size_t>(each.differences.size(), 4); ++n)
       text += "    " + each.differences[n] + "\n";
     if (each.differences.size() > 4)
@@ -102,11 +115,22 @@ std::string table(const std::vector<Row>& rows, const Options& options) {
       "| scenes | engine | number | whole | share of time | numbers | impacts | worst error, predicted "
       "ones | which | differ |\n|---|---|---|---|---|---|---|---|---|---|\n";
   for (const Row& row : rows)
-    text += "| " + row.kind + " | " + row.engine + " | " + std::to_string(row.scenes) + " | " +
-            std::to_string(row.whole) + " | " + rounded(row.share, 3) + " | " + std::to_string(row.numbers) +
-            " | " + std::to_string(row.impacts) + " | " + rounded(row.worst) + " | " + row.worst_what +
-            " | " + (row.failed == 0 ? "none" : "**" + std::to_string(row.failed) + "**") + " |\n";
+    text += "| " + row.kind + (options.several ? ", several dampers | " : " | ") + row.engine + " | " +
+            std::to_string(row.scenes) + " | " + std::to_string(row.whole) + " | " + rounded(row.share, 3) +
+            " | " + std::to_string(row.numbers) + " | " + std::to_string(row.impacts) +
+            (options.several ? ", together " + std::to_string(row.together) : "") + " | " +
+            rounded(row.worst) + " | " + row.worst_what + " | " +
+            (row.failed == 0 ? "none" : "**" + std::to_string(row.failed) + "**") + " |\n";
   return text;
+}
+
+int usage(const std::string& what) {
+  std::cerr << "impact-damper-oracle: " << what
+            << "\nusage: impact-damper-oracle [--dampers one|several] [--kind random|round|aimed] "
+               "[--engine exact|restitution|cem] [--seed N] [--count N] [--threads N] [--results FILE]\n"
+               "       impact-damper-oracle [--engine ENGINE] [--scene FILE] [scene options of "
+               "impact-damper run]\n";
+  return 2;
 }
 
 int compare_many(const Options& options) {
@@ -114,6 +138,7 @@ int compare_many(const Options& options) {
   bool missed = false;
   for (const std::string& kind : options.kinds)
     for (const std::string& engine : options.engines) {
+      if (options.several ? engine == Cem::name : kind == "aimed") continue;
       rows.push_back(compare_all(kind, engine, options));
       const Row& row = rows.back();
       for (const std::string& failure : row.failures) std::cout << kind << ' ' << failure;
@@ -121,6 +146,7 @@ int compare_many(const Options& options) {
       missed = missed || row.failed > 0 || row.share < least_share;
       std::cout.flush();
     }
+  if (rows.empty()) return usage("no such scenes with this engine");
   const std::string text = table(rows, options);
   std::cout << text;
   if (!options.results.empty()) {
@@ -150,16 +176,6 @@ int show_one(const Options& options) {
   return result.differences.empty() ? 0 : 1;
 }
 
-int usage(const std::string& what) {
-  std::cerr << "impact-damper-oracle: " << what
-            << "\nusage: impact-damper-oracle [--kind random|round] [--engine exact|restitution] [--seed N] "
-               "[--count N] "
-               "[--threads N] [--results FILE]\n       impact-damper-oracle [--engine ENGINE] [--scene FILE] "
-               "[scene options of "
-               "impact-damper run]\n";
-  return 2;
-}
-
 int run(const std::vector<std::string>& words) {
   Options options;
   for (std::size_t i = 0; i < words.size(); i += 2) {
@@ -181,7 +197,9 @@ int run(const std::vector<std::string>& words) {
     if (word == "--kind" ? !one_of(options.kinds) : word == "--engine" && !one_of(options.engines))
       return usage(word + ": unknown " + value);
     if (word == "--kind" || word == "--engine") continue;
-    if (word == "--seed" && whole) {
+    if (word == "--dampers" && (value == "one" || value == "several")) {
+      options.several = value == "several";
+    } else if (word == "--seed" && whole) {
       options.first = *whole;
     } else if (word == "--count" && whole) {
       options.count = *whole;

@@ -1,8 +1,10 @@
 #include "oracle.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <limits>
+#include <map>
+#include <stdexcept>
 #include <utility>
 
 #include "reference.hpp"
@@ -22,603 +24,746 @@ namespace {
 using impact_damper::Calibration;
 using impact_damper::Wall;
 
-// A step is this long in units of the regime's rate; then term n is at most 4^n/n! of the state.
+// A step is this long in units of the motion's rate; then term n is at most 4^n/n! of the state.
 constexpr double step_by_rate = 4;
 constexpr double negligible_term = 1e-36;
-
-// Below this part of a polynomial's size a leading coefficient is zero: at a motion's start it decides to
-// which side of the wall it goes, and where events coincide it is zero but for rounding.
+// A coefficient below this part of its polynomial's size is zero but for rounding.
 const Quad zero_within_rounding = Quad(1e-29L);
+// Events nearer to each other than this, times 1 + t, are one instant.
+const Quad one_instant = Quad(1e-28L);
 
-enum class Regime { flight, contact, slow_contact, stuck };
-
-// The state, seen from the wall at which q = 0: the cavity is q > 0. For the right wall all is mirrored.
-struct State {
-  Quad t = 0, x = 0, v = 0, q = 0, w = 0;
+// The motion of a contact without its fast mode: d = place . (x, v, f, f'), s = speed . (x, v, f, f').
+using Row = std::array<Quad, 4>;
+struct SlowMotion {
+  Row place{}, speed{};
 };
 
-struct Parameters {
-  Quad nu, e, zeta, k, f0, omega_f;
-  Quad stiffness, damping;  // of the wall: F = damping q' + stiffness q
+struct Damper {
+  Quad nu, e, clearance;
+  int side = 1;       // from which wall d is counted: +1 left, -1 right
+  Quad d = 0, s = 0;  // distance from it, velocity away from it
+  bool stuck = false;
+  std::size_t contact = 0;              // while stuck or in contact: its own
+  Polynomial path;                      // d in this step
+  std::vector<std::size_t> chattering;  // impacts on this wall since it was met or left
+  Quad rest = 0;  // how long the rest of the chattering takes that has been taken at once
+  // Compliant walls: their force on the damper, away from them, is -nu (damping s + stiffness d) in contact.
+  bool in_contact = false;
+  bool pushes = true;  // the primary mass, too
+  Quad stiffness = 0, damping = 0;
+  std::optional<std::size_t> impact;  // that began the contact
+  Polynomial push;                    // h^2 (damping s + stiffness d) in this step
+  SlowMotion slow;
+  Wall wall() const { return side > 0 ? Wall::left : Wall::right; }
+  bool rests() const { return d == 0 && s == 0; }
 };
 
-// What a step is made of: all is a polynomial in s, t = t0 + h s.
-struct Step {
-  Quad h;
-  Polynomial x, v, q, w, f, acceleration;  // acceleration: h^2 x''
-};
-
-// The motion of a contact without its fast mode: q = position . (x, v, f, f'), w = velocity . (x, v, f, f').
-// Found as the fixed point of its equations, which contracts by the ratio of slow and fast rates.
-struct SlowManifold {
-  std::array<Quad, 4> position{}, velocity{};
-};
-
-std::optional<SlowManifold> slow_manifold(const Parameters& p) {
-  SlowManifold slow;
-  const auto times_system = [&](const std::array<Quad, 4>& row) {
-    // The slow system's matrix: x' = v, v' = nu F + f - x - 2 zeta v, f' = g, g' = -omega_f^2 f.
-    std::array<Quad, 4> v_row{};
-    for (int i = 0; i < 4; ++i)
-      v_row[i] = p.nu * (p.damping * slow.velocity[i] + p.stiffness * slow.position[i]);
-    v_row[0] -= 1, v_row[1] -= 2 * p.zeta, v_row[2] += 1;
-    std::array<Quad, 4> product{};
-    for (int i = 0; i < 4; ++i) product[i] = row[1] * v_row[i];
-    product[1] += row[0];
-    product[3] += row[2];
-    product[2] -= row[3] * p.omega_f * p.omega_f;
-    return product;
-  };
-  const std::array<Quad, 4> driven{1, 2 * p.zeta, -1, 0};
-  Quad change = 1;
-  for (int i = 0; i < 80; ++i) {
-    const SlowManifold before = slow;
-    slow.velocity = times_system(slow.position);
-    const std::array<Quad, 4> acceleration = times_system(slow.velocity);
-    Quad size = 0, last = change;
-    change = 0;
-    for (int j = 0; j < 4; ++j) {
-      slow.position[j] =
-          ((driven[j] - acceleration[j]) / (1 + p.nu) - p.damping * slow.velocity[j]) / p.stiffness;
-      size += magnitude(slow.position[j]);
-      change += magnitude(slow.position[j] - before.position[j]);
-    }
-    if (!(size < 1e30L)) return {};
-    change /= size;
-    if (change < Quad(1e-32L)) {
-      slow.velocity = times_system(slow.position);
-      return slow;
-    }
-    if (i > 8 && !(change < last)) return {};
-  }
-  return {};
+int leading(const Polynomial& p) {  // the first coefficient that is more than rounding; -1: none
+  const Quad least = p.sum_of_magnitudes() * zero_within_rounding;
+  for (int n = 0; n <= p.degree; ++n)
+    if (magnitude(p.at[n]) > least) return n;
+  return -1;
+}
+int leading_sign(const Polynomial& p) {
+  const int first = leading(p);
+  return first < 0 ? 0 : sign_of(p.at[first]);
+}
+void clear_leading(Polynomial& p) {
+  const int first = leading(p);
+  for (int n = 0; n < first; ++n) p.at[n] = 0;
+}
+// The roots in (0, 1] but for those that the motion begins with.
+std::vector<Root> roots_after_start(const Polynomial& p) {
+  int first = 0;
+  while (first < p.degree && p.at[first] == 0) ++first;
+  if (2 * magnitude(p.at[first]) > p.sum_of_magnitudes() * (1 + zero_within_rounding)) return {};
+  return changes_of_sign(first == 0 ? p : divided_by_power(p, first));
+}
+Quad first_root(const Polynomial& p, int direction) {  // 2: none
+  for (const Root& root : roots_after_start(p))
+    if (root.direction == direction) return root.s;
+  return 2;
 }
 
 class Integrator {
  public:
   explicit Integrator(const Question& question)
-      : question_(question), random_(question.seed), noisy_(question.noise != 0) {}
+      : question_(question), compliant_(question.walls == Walls::compliant) {}
 
   Answer run() {
     prepare();
-    enter_from_start();
-    while (!done_) advance();
-    finish();
+    for (Damper& each : dampers_)
+      if (compliant_ && each.d < 0) open_contact(each);
+    answer_.initial = energy();
+    for (std::size_t i = 0; i < dampers_.size(); ++i) answer_.dampers[i].initial = kinetic(dampers_[i]);
+    note_peak(0, x_);
+    if (!compliant_) impact();  // of those that begin at a wall with a speed into it
+    if (compliant_)
+      for (Damper& each : dampers_)
+        if (each.d == 0 && each.s < 0) touch(each);
+    while (!done_ && t_ < until_) advance();
+    answer_.end_time = t_;
+    answer_.final = energy();
+    for (std::size_t i = 0; i < dampers_.size(); ++i) {
+      answer_.dampers[i].final = kinetic(dampers_[i]);
+      leave(dampers_[i], 0);
+    }
     return std::move(answer_);
   }
 
  private:
-  Quad noisy(Quad number) {
-    return noisy_ ? number * (1 + Quad(question_.noise) * Quad(random_.uniform(-1, 1))) : number;
+  bool alone() const { return question_.scene.dampers.size() == 1; }
+  // Several dampers' equal numbers of one kind get equal noise.
+  Quad noisy(Quad number, std::uint64_t kind) const {
+    if (question_.noise == 0) return number;
+    const std::uint64_t value = alone() ? 0 : std::bit_cast<std::uint64_t>(double(number));
+    reference::Random random(value ^ (question_.seed << 32) ^ kind);
+    random.bits();
+    return number * (1 + Quad(question_.noise) * Quad(random.uniform(-1, 1)));
   }
-  bool rigid() const { return question_.walls == Walls::rigid; }
 
   void prepare() {
     const auto& scene = question_.scene;
-    p_.nu = noisy(scene.damper().mass_ratio);
-    p_.e = noisy(scene.damper().restitution);
-    if (scene.damper().restitution == 1) p_.e = 1;
-    p_.zeta = noisy(scene.damping_ratio);
-    p_.k = noisy(scene.damper().wall_stiffness);
-    p_.f0 = noisy(scene.force_amplitude);
-    p_.omega_f = noisy(scene.force_frequency);
-    const Quad pi = acosq(-1);
-    Quad ratio = 1;
-    if (p_.e > 0) {
-      const Quad l = -logq(p_.e);
-      ratio = l / sqrtq(pi * pi + l * l);
-    }
-    if (question_.calibration == Calibration::two_body) ratio /= sqrtq(1 + p_.nu);
-    p_.stiffness = p_.k / p_.nu;
-    p_.damping = 2 * sqrtq(p_.stiffness) * ratio;
-    if (!rigid() && ratio > 0) slow_ = slow_manifold(p_);
-
-    state_.x = noisy(scene.x0);
-    state_.v = noisy(scene.v0);
-    state_.w = noisy(scene.damper().w0);
-    mirrored_ = scene.damper().y0 > 0.5;
-    // The distance from the nearer wall: 1 - y0 has no rounding in quadruple precision.
-    state_.q = noisy(mirrored_ ? 1 - Quad(scene.damper().y0) : Quad(scene.damper().y0));
-    if (mirrored_) state_.x = -state_.x, state_.v = -state_.v, state_.w = -state_.w;
+    zeta_ = noisy(scene.damping_ratio, 1);
+    f0_ = noisy(scene.force_amplitude, 2);
+    omega_ = noisy(scene.force_frequency, 3);
+    x_ = noisy(scene.x0, 4);
+    v_ = noisy(scene.v0, 5);
     until_ = scene.until_time ? Quad(*scene.until_time) : Quad(1e30L);
+    for (const impact_damper::SceneDamper& each : scene.dampers) {
+      Damper damper;
+      damper.nu = noisy(each.mass_ratio, 6);
+      damper.e = each.restitution == 1 ? Quad(1) : noisy(each.restitution, 7);
+      // Those as far from their right walls, with other clearances, reach these at one instant, too.
+      const Quad from_left = noisy(each.y0, 8), from_right = noisy(Quad(each.clearance) - each.y0, 9);
+      damper.clearance = alone() ? Quad(each.clearance) : from_left + from_right;
+      damper.side = from_left <= from_right ? 1 : -1;
+      damper.d = damper.side > 0 ? from_left : from_right;
+      damper.s = damper.side * noisy(each.w0, 10);
+      const auto& first = scene.dampers[0];
+      const bool other_damper = question_.fault == Fault::wall_damper_of_first,
+                 other_stiffness = question_.fault == Fault::stiffness_of_first;
+      damper.stiffness = noisy((other_stiffness ? first : each).wall_stiffness, 11) / damper.nu;
+      const Quad e = other_damper ? Quad(first.restitution) : damper.e;
+      Quad ratio = 1;
+      if (e > 0) {
+        const Quad pi = acosq(-1), log = -logq(e);
+        ratio = log / sqrtq(pi * pi + log * log);
+      }
+      if (question_.calibration == Calibration::two_body) ratio /= sqrtq(1 + damper.nu);
+      damper.damping = 2 * sqrtq(damper.stiffness) * ratio;
+      damper.pushes = question_.fault == Fault::wall_force_left_out
+                          ? dampers_.size() + 1 < scene.dampers.size()
+                          : question_.fault != Fault::own_contact_only || dampers_.empty();
+      dampers_.push_back(damper);
+    }
+    if (question_.fault == Fault::clearance_ignored) dampers_.back().clearance = dampers_[0].clearance;
+    answer_.dampers.resize(dampers_.size());
   }
 
-  Quad side() const { return mirrored_ ? -1 : 1; }
-  Wall wall() const { return mirrored_ ? Wall::right : Wall::left; }
-
+  static Quad square(Quad x) { return x * x; }
+  Quad kinetic(const Damper& each) const { return each.nu * square(v_ + each.side * each.s) / 2; }
   Energy energy() const {
-    Energy now;
-    const Quad v = state_.v, w = state_.w, z = v + w;
-    now.kinetic = (v * v + p_.nu * z * z) / 2;
-    now.spring = state_.x * state_.x / 2;
-    now.wall = in_contact() ? p_.k * state_.q * state_.q / 2 : Quad(0);
-    now.paper = (v * v + p_.nu * (v * v + w * w) + state_.x * state_.x) / 2;
+    Energy now{v_ * v_ / 2, x_ * x_ / 2, 0, (v_ * v_ + x_ * x_) / 2};
+    for (const Damper& each : dampers_) {
+      now.kinetic += kinetic(each);
+      now.paper += each.nu * (v_ * v_ + each.s * each.s) / 2;
+      if (each.in_contact) now.wall += each.nu * each.stiffness * each.d * each.d / 2;
+    }
     return now;
   }
-  bool in_contact() const { return regime_ == Regime::contact || regime_ == Regime::slow_contact; }
 
-  // An upper bound of how fast the regime's state can change, in the norm max(|x|, |v|, |f|, |f'|/omega_f,
-  // Omega |q|, |w|) with Omega the contact's frequency.
-  Quad rate() const {
-    Quad bound = (regime_ == Regime::slow_contact ? 3 : 2) + 2 * p_.zeta;
-    if (regime_ == Regime::contact) bound += sqrtq(p_.stiffness * (1 + p_.nu)) + p_.damping * (1 + p_.nu);
-    if (p_.f0 != 0) bound = std::max(bound, p_.omega_f);
-    return bound;
+  Quad joined_mass() const {
+    Quad mass = 1, most = 0;
+    for (const Damper& each : dampers_)
+      if (each.stuck) mass += each.nu, most = each.nu;
+    return question_.fault == Fault::own_mass_only ? 1 + most : mass;
   }
 
-  // Taylor's coefficients up to the order that leaves nothing.
+  // On all that moves together with the primary mass.
+  Quad force() const {
+    Quad sum = (f0_ != 0 ? f0_ * sinq(omega_ * t_) : Quad(0)) - x_ - 2 * zeta_ * v_;
+    for (const Damper& each : dampers_)
+      if (each.in_contact) sum += each.side * each.nu * (each.damping * each.s + each.stiffness * each.d);
+    return sum;
+  }
+  // A speed or a force that is rounding of what else moves.
+  Quad rounded() const { return (magnitude(v_) + magnitude(x_) + magnitude(f0_)) * zero_within_rounding; }
+
+  // An upper bound of how fast the state can change, in the norm max(|x|, |v|, |f|, |f'|/omega, rate |d|,
+  // |s|) with `rate` that of the undamped contacts.
+  Quad rate() const {
+    Quad most = 0, own = 0, sum = 0, damping = 0;
+    for (const Damper& each : dampers_) {
+      if (!each.in_contact || slow_) continue;
+      most = std::max(most, each.stiffness), own = std::max(own, each.damping);
+      sum += each.nu * each.stiffness, damping += each.nu * each.damping;
+    }
+    const Quad bound = (slow_ ? 3 : 2) + 2 * zeta_ + sqrtq(most + sum) + own + damping;
+    return f0_ != 0 ? std::max(bound, omega_) : bound;
+  }
+
+  // x = x(s), t = t + h s, by Taylor's coefficients up to the order that leaves nothing.
   void expand(Quad h) {
+    h_ = h;
     const double reach = double(h * rate());
     int order = 4;
     for (double term = std::pow(reach, 4) / 24; term > negligible_term && order < Polynomial::most - 3;
          ++order)
       term *= reach / (order + 1);
-    step_.h = h;
-    for (Polynomial* each : {&step_.x, &step_.v, &step_.q, &step_.w, &step_.f, &step_.acceleration}) {
-      each->degree = order;
-      each->at.fill(0);
+    for (Polynomial* each : {&px_, &pv_, &pf_, &pa_}) each->degree = order, each->at.fill(0);
+    auto &x = px_.at, &v = pv_.at, &f = pf_.at, &a = pa_.at;
+    if (f0_ != 0) {
+      f[0] = f0_ * sinq(omega_ * t_);
+      f[1] = f0_ * cosq(omega_ * t_) * omega_ * h;
+      for (int n = 0; n + 2 <= order + 1; ++n)
+        f[n + 2] = -(omega_ * h) * (omega_ * h) * f[n] / ((n + 1) * (n + 2));
     }
-    auto &x = step_.x.at, &v = step_.v.at, &q = step_.q.at, &w = step_.w.at, &f = step_.f.at,
-         &a = step_.acceleration.at;
-    if (p_.f0 != 0) {
-      const Quad angle = p_.omega_f * state_.t;
-      f[0] = side() * p_.f0 * sinq(angle);
-      f[1] = side() * p_.f0 * cosq(angle) * p_.omega_f * h;
-      const Quad square = p_.omega_f * h * p_.omega_f * h;
-      for (int n = 0; n + 2 <= order + 1; ++n) f[n + 2] = -square * f[n] / ((n + 1) * (n + 2));
+    x[0] = x_, x[1] = v_ * h;
+    for (Damper& each : dampers_) {
+      for (Polynomial* one : {&each.path, &each.push}) one->degree = order, one->at.fill(0);
+      each.path.at[0] = each.d, each.path.at[1] = each.s * h;
     }
-    x[0] = state_.x, x[1] = state_.v * h;
-    q[0] = state_.q, q[1] = state_.w * h;
-    const Quad drag = 2 * p_.zeta * h, h2 = h * h;
-    const Quad wall_drag = p_.damping * h, wall_spring = p_.stiffness * h2;
+    const Quad mass = joined_mass(), by_mass = h * h / mass, drag = 2 * zeta_ * h / mass;
     for (int n = 0; n <= order; ++n) {
-      const Quad free = h2 * (f[n] - x[n]) - drag * ((n + 1) * x[n + 1]);
-      const int below = (n + 1) * (n + 2);
-      switch (regime_) {
-        case Regime::flight:
-          a[n] = free;
-          q[n + 2] = -free / below;
-          break;
-        case Regime::contact: {
-          const Quad push = wall_drag * ((n + 1) * q[n + 1]) + wall_spring * q[n];
-          a[n] = p_.nu * push + free;
-          q[n + 2] = -(push + a[n]) / below;
-          break;
+      a[n] = by_mass * (f[n] - x[n]) - drag * ((n + 1) * x[n + 1]);
+      for (Damper& each : dampers_) {
+        if (!each.in_contact) continue;
+        auto& d = each.path.at;
+        Quad speed = (n + 1) * d[n + 1] / h;
+        if (slow_) {
+          const Row state{x[n], (n + 1) * x[n + 1] / h, f[n], (n + 1) * f[n + 1] / h};
+          d[n] = product(each.slow.place, state), speed = product(each.slow.speed, state);
         }
-        case Regime::slow_contact: {
-          const std::array<Quad, 4> s{x[n], (n + 1) * x[n + 1] / h, f[n], (n + 1) * f[n + 1] / h};
-          q[n] = w[n] = 0;
-          for (int i = 0; i < 4; ++i) {
-            q[n] += slow_->position[i] * s[i];
-            w[n] += slow_->velocity[i] * s[i];
-          }
-          a[n] = p_.nu * h2 * (p_.damping * w[n] + p_.stiffness * q[n]) + free;
-          break;
-        }
-        case Regime::stuck:
-          a[n] = free / (1 + p_.nu);
-          q[n + 2] = 0;
-          break;
+        each.push.at[n] = h * h * (each.damping * speed + each.stiffness * d[n]);
+        if (each.pushes) a[n] += each.side * each.nu * each.push.at[n];
       }
-      x[n + 2] = a[n] / below;
+      x[n + 2] = a[n] / ((n + 1) * (n + 2));
+      v[n] = (n + 1) * x[n + 1] / h;
+      for (Damper& each : dampers_)
+        if (!each.stuck && !(slow_ && each.in_contact))
+          each.path.at[n + 2] = -(each.side * a[n] + each.push.at[n]) / ((n + 1) * (n + 2));
     }
     // Where the motion begins at a wall, that is exact, and its leading coefficients are zero or more than
     // rounding.
-    if (regime_ == Regime::flight && q[0] == 0) clear_leading(step_.q);
-    for (int n = 0; n <= order; ++n) {
-      v[n] = (n + 1) * x[n + 1] / h;
-      if (regime_ != Regime::slow_contact) w[n] = (n + 1) * q[n + 1] / h;
-    }
+    for (Damper& each : dampers_)
+      if (each.d == 0) clear_leading(each.path);
+  }
+  Quad speed_of(const Damper& each, Quad s) const {
+    Quad slope = 0;
+    for (int n = each.path.degree; n > 0; --n) slope = slope * s + n * each.path.at[n];
+    return slope / h_;
   }
 
-  static int leading(const Polynomial& p) {  // the first coefficient that is more than rounding; -1: none
-    const Quad least = p.sum_of_magnitudes() * zero_within_rounding;
-    for (int n = 0; n <= p.degree; ++n)
-      if (magnitude(p.at[n]) > least) return n;
-    return -1;
+  static Quad product(const Row& a, const Row& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
   }
-  static void clear_leading(Polynomial& p) {
-    const int first = leading(p);
-    for (int n = 0; n < first; ++n) p.at[n] = 0;
-  }
-  // Whether a motion that has just begun goes this way, against what its beginning was decided by: only
-  // rounding.
-  bool departs(const Polynomial& p, int direction) const {
-    if (!begins_) return false;
-    const int first = leading(p);
-    return first >= 0 && sign_of(p.at[first]) == direction;
-  }
-  // Its roots in (0, 1] but for those that the motion begins with.
-  static std::vector<Root> roots_after_start(const Polynomial& p) {
-    if (p.at[0] != 0) return changes_of_sign(p);
-    int first = 0;
-    while (first < p.degree && p.at[first] == 0) ++first;
-    return changes_of_sign(divided_by_power(p, first));
-  }
-
-  // A relative speed that is rounding of what else moves.
-  Quad rounded_speed() const {
-    return (magnitude(state_.v) + magnitude(state_.x) + magnitude(p_.f0)) * zero_within_rounding;
-  }
-
-  // At the wall: to which side will the motion go that begins now as a flight? +1 off the wall, -1 into it, 0
-  // if it stays.
-  int side_of_departure() {
-    if (state_.w != 0) {
-      // A speed that is rounding of what goes on: decided by what follows.
-      if (magnitude(state_.w) > rounded_speed()) return sign_of(state_.w);
-      state_.w = 0;
-    }
-    const Regime before = regime_;
-    regime_ = Regime::flight;
-    const Quad q = state_.q;
-    state_.q = 0;
-    expand(step_by_rate / rate());
-    state_.q = q;
-    regime_ = before;
-    const int first = leading(step_.q);
-    return first < 0 ? 0 : sign_of(step_.q.at[first]);
-  }
-
-  void enter_from_start() {
-    regime_ = !rigid() && state_.q < 0 ? Regime::contact : Regime::flight;
-    answer_.initial = energy();
-    if (state_.q <= 0) {
-      if (regime_ == Regime::contact)
-        open_contact();
-      else
-        decide_at_wall();
-    }
-    note_peak(state_.t, state_.x);
-  }
-
-  // q = 0: what happens now.
-  void decide_at_wall() {
-    const int departure = side_of_departure();
-    if (departure >= 0) {  // 0: nothing moves, and nothing presses
-      regime_ = Regime::flight;
-      return;
-    }
-    if (rigid()) {
-      if (state_.w < 0) return strike();
-      regime_ = Regime::stuck;
-      state_.w = 0;
-      // A chattering is complete, too, once its bounces are slower than rounding.
-      if (answer_.impacts.size() > chatter_begin_ &&
-          p_.e * magnitude(answer_.impacts.back().relative_velocity) <= 2 * rounded_speed())
-        close_chattering();
-      open_contact();
-      return;
-    }
-    if (state_.w < 0) {
-      answer_.impacts.push_back({state_.t, wall(), side() * state_.w, 0, side() * state_.x, {}});
-      of_impact_ = true;
-    }
-    regime_ = Regime::contact;
-    open_contact();
-  }
-
-  void open_contact() { answer_.contacts.push_back({state_.t, state_.t, wall()}), contact_open_ = true; }
-  void close_contact() {
-    answer_.contacts.back().end = state_.t;
-    answer_.contacts.back().end_speed = magnitude(state_.w);
-    contact_open_ = of_impact_ = false;
-    chatter_begin_ = answer_.impacts.size();
-  }
-
-  // Rigid walls: the impact, and what the bouncing that follows comes to.
-  void strike() {
-    const Quad speed = -state_.w;
-    if (answer_.impacts.size() > chatter_begin_ && answer_.impacts.back().wall != wall())
-      chatter_begin_ = answer_.impacts.size();
-    const Quad loss = p_.nu * (1 - p_.e * p_.e) * speed * speed / (2 * (1 + p_.nu));
-    answer_.impacts.push_back({state_.t, wall(), side() * state_.w, loss, side() * state_.x, {}});
-    // Relative speed w becomes -e w, v + nu (v + w) is kept.
-    state_.v += p_.nu * state_.w * (1 + p_.e) / (1 + p_.nu);
-    state_.w = p_.e * speed;
-    if (state_.w == 0) {
-      if (side_of_departure() < 0) {
-        complete_chattering(0);
-      } else {
-        regime_ = Regime::flight;
+  // The slow motions of all that are in contact, as the fixed point of their equations, which contracts by
+  // the ratio of slow and fast rates; false if it does not.
+  bool find_slow_motions() {
+    Quad mass = 1;
+    for (Damper& each : dampers_)
+      if (each.in_contact) mass += each.nu, each.slow = {};
+    Row acceleration{};  // x'', of the driven motion
+    // d/dt of row . (x, v, f, f'), where x' = v, v' = acceleration, f'' = -omega^2 f.
+    const auto rate_of = [&](const Row& row) {
+      Row rate;
+      for (int i = 0; i < 4; ++i) rate[i] = row[1] * acceleration[i];
+      rate[1] += row[0], rate[3] += row[2], rate[2] -= row[3] * omega_ * omega_;
+      return rate;
+    };
+    Quad change = 1;
+    for (int round = 0; round < 80; ++round) {
+      acceleration = {-1, -2 * zeta_, 1, 0};
+      for (const Damper& each : dampers_)
+        if (each.in_contact)
+          for (int i = 0; i < 4; ++i)
+            acceleration[i] += each.side * each.nu *
+                               (each.damping * each.slow.speed[i] + each.stiffness * each.slow.place[i]);
+      // d'' of each; x'' (1 + sum of nu) is what drives, less what moves the masses relative to the walls.
+      std::vector<Row> relative;
+      Row driven{-1, -2 * zeta_, 1, 0};
+      for (Damper& each : dampers_) {
+        if (!each.in_contact) continue;
+        each.slow.speed = rate_of(each.slow.place);
+        relative.push_back(rate_of(each.slow.speed));
+        for (int i = 0; i < 4; ++i) driven[i] -= each.side * each.nu * relative.back()[i];
       }
+      const Quad last = std::exchange(change, 0);
+      std::size_t n = 0;
+      for (Damper& each : dampers_) {
+        if (!each.in_contact) continue;
+        Quad size = 0, its_change = 0;
+        for (int i = 0; i < 4; ++i) {
+          const Quad push = -(each.side * driven[i] / mass + relative[n][i]),
+                     place = (push - each.damping * each.slow.speed[i]) / each.stiffness;
+          its_change += magnitude(place - each.slow.place[i]);
+          size += magnitude(place);
+          each.slow.place[i] = place;
+        }
+        if (!(size < 1e30L)) return false;
+        change = std::max(change, its_change / size);
+        ++n;
+      }
+      if (change < Quad(1e-32L)) {
+        for (Damper& each : dampers_)
+          if (each.in_contact) each.slow.speed = rate_of(each.slow.place);
+        return true;
+      }
+      if (round > 8 && !(change < last)) return false;
+    }
+    return false;
+  }
+
+  // The fast modes of all contacts have died out within rounding of the force: go on without them.
+  void drop_fast_modes() {
+    if (slow_) return follow_slow_motions();
+    if (question_.fault != Fault::none) return;
+    std::vector<int> sides;
+    Quad mass = 1, least = -1;  // least: of how fast fast modes die out
+    for (const Damper& each : dampers_) {
+      sides.push_back(each.in_contact ? each.side : 0);
+      if (!each.in_contact) continue;
+      if (!(each.d < 0)) return;
+      mass += each.nu;
+      if (least < 0 || each.damping < least) least = each.damping;
+    }
+    // What has not yet fallen to 1e-9 need not be looked for.
+    if (!(least * mass * (t_ - changed_) > 40)) return;
+    if (sides != sides_) {
+      sides_ = sides;
+      slow_motions_found_ = find_slow_motions();
+    }
+    if (!slow_motions_found_) return;
+    const Row state = driving_state();
+    for (const Damper& each : dampers_) {
+      if (!each.in_contact) continue;
+      const Quad off =
+          each.stiffness * magnitude(each.d - product(each.slow.place, state)) +
+          (each.damping + sqrtq(each.stiffness)) * magnitude(each.s - product(each.slow.speed, state));
+      if (off > Quad(1e-29L) * (magnitude(x_) + magnitude(v_) + magnitude(state[2]))) return;
+    }
+    slow_ = true;
+    follow_slow_motions();
+  }
+  void follow_slow_motions() {
+    const Row state = driving_state();
+    for (Damper& each : dampers_)
+      if (each.in_contact) each.d = product(each.slow.place, state), each.s = product(each.slow.speed, state);
+  }
+  Row driving_state() const { return {x_, v_, f0_ * sinq(omega_ * t_), f0_ * cosq(omega_ * t_) * omega_}; }
+
+  int number_of(const Damper& each) const { return int(&each - dampers_.data()); }
+  void open_contact(Damper& each) {
+    each.contact = answer_.contacts.size();
+    answer_.contacts.push_back({t_ + each.rest, t_, number_of(each), each.wall()});
+    each.rest = 0;
+    (compliant_ ? each.in_contact : each.stuck) = true;
+    slow_ = false;
+    changed_ = t_;
+  }
+  // A compliant wall is met.
+  void touch(Damper& each) {
+    each.impact.reset();
+    // Only at the beginning a contact needs no impact; one damper comes to rest on a wall by rounding only.
+    if (each.s < 0 || (t_ > 0 && !alone())) {
+      each.impact = answer_.impacts.size();
+      answer_.impacts.push_back({t_, number_of(each), each.wall(), each.side * each.s, x_, 0});
+    }
+    open_contact(each);
+  }
+  void leave(Damper& each, Quad end_speed) {
+    if (each.stuck || each.in_contact) {
+      answer_.contacts[each.contact].end = t_;
+      answer_.contacts[each.contact].end_speed = end_speed;
+      each.chattering.clear();
+      slow_ = false;
+      changed_ = t_;
+    }
+    each.stuck = each.in_contact = false;
+    each.impact.reset();
+    each.rest = 0;
+  }
+  void close_chattering(Damper& each) {
+    for (const std::size_t i : each.chattering) answer_.impacts[i].accumulation = t_ + each.rest;
+    each.chattering.clear();
+  }
+
+  // Those at rest on a wall: do they stick? The sign of x'' from now on does not depend on how many do.
+  void decide() {
+    for (Damper& each : dampers_)  // a speed that is rounding of what goes on: what follows decides
+      if (each.d == 0 && !each.in_contact && magnitude(each.s) <= rounded()) each.s = 0;
+    if (std::none_of(dampers_.begin(), dampers_.end(), [](const Damper& each) { return each.rests(); }))
+      return;
+    if (compliant_) {
+      expand(step_by_rate / rate());
+      for (Damper& each : dampers_)
+        if (each.rests() && !each.in_contact && leading_sign(each.path) < 0) touch(each);
       return;
     }
-    regime_ = Regime::flight;
-    if (p_.e == 1) return;
-    // Under the relative acceleration -a the rest lasts 2 w / (a (1 - e)), but for the part by which a
-    // changes in it: by itself and, through the damper, by the impacts. It is taken once that is beyond
-    // quadruple rounding.
-    expand(step_by_rate / rate());
-    const Quad h = step_.h, a = step_.acceleration.at[0] / (h * h);
-    if (!(a > 0)) return;
-    const Quad rest = 2 * state_.w / (a * (1 - p_.e));
-    Quad change = 2 * p_.zeta * p_.nu * (1 + p_.e) * state_.w / ((1 + p_.nu) * (1 - p_.e));
-    Quad power = rest / h;
-    for (int n = 1; n <= 6; ++n, power *= rest / h)
-      change += magnitude(step_.acceleration.at[n]) / (h * h) * power;
-    // But impacts that an engine may list, however little they matter, are listed here, too.
-    if (change <= a * Quad(1e-10L) && rest * change <= a * Quad(1e-29L) * (1 + state_.t) &&
-        rest <= Quad(1e-15L) * (1 + state_.t))
-      complete_chattering(rest);
-  }
-
-  void complete_chattering(Quad rest) {
-    // Momentum with what acts on both masses; all relative energy is lost.
-    const Quad w = state_.w;
-    answer_.chatter_loss += p_.nu * w * w / (2 * (1 + p_.nu));
-    if (rest > 0) {
-      const Quad angle = p_.omega_f * state_.t;
-      const Quad force = p_.f0 != 0 ? side() * p_.f0 * sinq(angle) : Quad(0);
-      const Quad acting = force - state_.x - 2 * p_.zeta * state_.v;
-      const Quad v = state_.v + (p_.nu * w + rest * acting) / (1 + p_.nu);
-      const Quad mean = (state_.v + v) / 2;
-      answer_.viscous_work += 2 * p_.zeta * mean * mean * rest;
-      add_forcing_work(force * mean * rest);
-      state_.x += mean * rest;
-      state_.v = v;
-      state_.t += rest;
-    } else {
-      state_.v += p_.nu * w / (1 + p_.nu);
+    const Quad now = force();
+    int push = sign_of(now);
+    if (magnitude(now) <= Quad(1e14L) * rounded()) {
+      expand(step_by_rate / rate());
+      push = leading_sign(pa_);
     }
-    state_.w = 0;
-    state_.q = 0;
-    close_chattering();
-    decide_at_wall();
-  }
-
-  void close_chattering() {
-    for (std::size_t i = chatter_begin_; i < answer_.impacts.size(); ++i)
-      answer_.impacts[i].accumulation = state_.t;
-    chatter_begin_ = answer_.impacts.size();
-  }
-
-  void perturb() {
-    if (!noisy_) return;
-    state_.t = noisy(state_.t);
-    state_.x = noisy(state_.x);
-    state_.v = noisy(state_.v);
-    state_.q = noisy(state_.q);
-    state_.w = noisy(state_.w);
-  }
-
-  // The fast mode of a contact has died out within rounding of the force: go on without it.
-  void drop_fast_mode() {
-    const Quad angle = p_.omega_f * state_.t;
-    const Quad f = side() * p_.f0 * sinq(angle), g = side() * p_.f0 * cosq(angle) * p_.omega_f;
-    const std::array<Quad, 4> s{state_.x, state_.v, f, g};
-    Quad q = 0, w = 0;
-    for (int i = 0; i < 4; ++i) q += slow_->position[i] * s[i], w += slow_->velocity[i] * s[i];
-    const Quad off =
-        p_.stiffness * magnitude(state_.q - q) + (p_.damping + sqrtq(p_.stiffness)) * magnitude(state_.w - w);
-    if (off > Quad(1e-29L) * (magnitude(state_.x) + magnitude(state_.v) + magnitude(f))) return;
-    regime_ = Regime::slow_contact;
-    state_.q = q, state_.w = w;
+    for (Damper& each : dampers_) {
+      if (!each.rests()) continue;
+      const bool sticks = push == each.side;
+      if (sticks && !each.stuck) {
+        // A chattering is complete, too, once its bounces are slower than rounding.
+        if (!each.chattering.empty() &&
+            (each.rest > 0 ||
+             each.e * magnitude(answer_.impacts[each.chattering.back()].relative_velocity) <= 2 * rounded()))
+          close_chattering(each);
+        open_contact(each);
+      } else if (!sticks) {
+        leave(each, 0);
+      }
+    }
   }
 
   void advance() {
     if (++answer_.steps > question_.most_steps ||
-        std::int64_t(answer_.impacts.size()) > question_.most_impacts) {
-      answer_.stop = Stop::effort;
-      done_ = true;
-      return;
-    }
-    if (regime_ == Regime::contact && slow_ && state_.q < 0) drop_fast_mode();
+        std::int64_t(answer_.impacts.size()) > question_.most_impacts)
+      return stop(Stop::effort);
+    if (!released_) decide();
+    released_ = false;
+    if (compliant_) drop_fast_modes();
     Quad h = step_by_rate / rate();
-    if (regime_ == Regime::flight && state_.q == 0 && state_.w > 0) {
-      // A bounce that will be short needs no long step.
-      expand(Quad(0x1p-10) / rate());
-      const Quad a = step_.acceleration.at[0] / (step_.h * step_.h);
-      if (a > 0) h = std::min(h, 8 * state_.w / a);
+    const Quad acceleration = force() / joined_mass();
+    for (const Damper& each : dampers_) {  // what will soon be at a wall needs no long step
+      if (each.stuck || each.in_contact) continue;
+      const double push = double(each.side * acceleration), speed = double(each.s);
+      const double way = double(push > 0 ? each.d : each.clearance - each.d),
+                   towards = push > 0 ? -speed : speed;
+      const double time =
+          (std::sqrt(towards * towards + 2 * std::fabs(push) * std::max(way, 0.0)) - towards) /
+          std::fabs(push);
+      if (time > 0) h = std::min(h, Quad(2 * time));
     }
-    if (h > until_ - state_.t) h = until_ - state_.t;
-    if (!(h > 0)) {
-      done_ = true;
-      return;
-    }
+    const bool last = h >= until_ - t_;
+    if (last) h = until_ - t_;
     expand(h);
 
-    // The terminal event, if any.
-    Quad end = 1;
-    enum class Event { none, near_wall, far_wall, off_wall, release } event = Event::none;
-    const auto first = [&](const Polynomial& p, int direction, Event kind) {
-      for (const Root& root : roots_after_start(p)) {
-        if (root.direction != direction) continue;
-        if (root.s < end || (root.s == end && event == Event::none)) end = root.s, event = kind;
-        return;
+    std::vector<Quad> near(dampers_.size(), 2), far(dampers_.size(), 2);
+    Quad end = 1, release = 2;
+    int side = 0;
+    for (std::size_t i = 0; i < dampers_.size(); ++i) {
+      const Damper& each = dampers_[i];
+      if (each.stuck) {
+        side = each.side;
+        continue;
       }
-    };
-    switch (regime_) {
-      case Regime::flight: {
-        if (departs(step_.q, -1))
-          end = 0, event = Event::near_wall;
-        else
-          first(step_.q, -1, Event::near_wall);
-        Polynomial gap = step_.q;
-        gap.at[0] -= 1;
-        first(gap, +1, Event::far_wall);
-        break;
+      near[i] = first_root(each.path, each.in_contact ? +1 : -1);
+      if (each.in_contact) {
+        if (question_.fault == Fault::let_go_by_force) near[i] = std::min(near[i], first_root(each.push, +1));
+        end = std::min(end, near[i]);
+        continue;
       }
-      case Regime::contact:
-      case Regime::slow_contact:
-        first(step_.q, +1, Event::off_wall);
-        break;
-      case Regime::stuck: {
-        Polynomial pressing = step_.acceleration;
-        if (begins_) clear_leading(pressing);
-        if (departs(pressing, -1))
-          end = 0, event = Event::release;
-        else
-          first(pressing, -1, Event::release);
-        break;
-      }
+      // A speed away from a wall that is rounding of what leads it back.
+      if (each.d == 0 && leading_sign(each.path) < 0) near[i] = 0;
+      Polynomial gap = each.path;
+      gap.at[0] -= each.clearance;
+      far[i] = first_root(gap, +1);
+      end = std::min({end, near[i], far[i]});
     }
-    const Quad stop = observe(end);
-    if (stop < end) end = stop, event = Event::none;
+    if (side != 0) {
+      Polynomial push = pa_;
+      clear_leading(push);
+      if (question_.fault == Fault::released_apart) push.at[0] -= side * h * h * Quad(1e-6L);
+      release = first_root(push, -side);
+      end = std::min(end, release);
+    }
+    const Quad together = end + one_instant * (1 + t_) / h;
+    end = observe(end);
     work(end);
-    move_to(end);
-    begins_ = false;
+    t_ = last && end == 1 ? until_ : t_ + h * end;
+    x_ = px_(end), v_ = pv_(end);
+    bool met = false;
+    std::vector<bool> meets(dampers_.size(), false);  // a compliant wall
+    for (std::size_t i = 0; i < dampers_.size(); ++i) {
+      Damper& each = dampers_[i];
+      if (each.stuck) continue;
+      each.d = each.path(end);
+      each.s = speed_of(each, end);
+      if (done_) continue;
+      if (each.in_contact) {
+        if (near[i] > together) continue;
+        each.d = 0, each.s = std::max(each.s, Quad(0));
+        leave(each, each.s);
+        released_ = true;
+        continue;
+      }
+      if (near[i] <= together || far[i] <= together) {
+        if (far[i] <= together) {
+          each.side = -each.side, each.s = -each.s;
+          each.chattering.clear();
+        }
+        each.d = 0;
+        met = true;
+        if (!(each.s < -rounded())) each.s = 0;  // what follows decides
+        meets[i] = compliant_ && each.s < 0;
+      } else if (!(each.d >= Quad(-1e-12L) && each.d <= each.clearance + Quad(1e-12L))) {
+        if (question_.noise == 0) throw std::logic_error("the oracle has lost a damper");
+        return stop(Stop::effort);  // changed by its noise to beyond a wall
+      }
+    }
     if (done_) return;
+    if (release <= together) {
+      const Quad end_speed = joined_mass() * magnitude(derivative(pa_)(end)) / (h * h * h);
+      for (Damper& each : dampers_) leave(each, end_speed);
+      released_ = true;
+    }
+    const bool event = met || released_;
     // Not within a contact: noise would keep its fast mode alive for ever.
-    if (event != Event::none || regime_ != Regime::contact) perturb();
-    switch (event) {
-      case Event::none:
-        return;
-      case Event::far_wall:
-        mirrored_ = !mirrored_;
-        state_.x = -state_.x, state_.v = -state_.v, state_.w = -state_.w;
-        [[fallthrough]];
-      case Event::near_wall:
-        state_.q = 0;
-        begins_ = true;
-        if (state_.w > 0) state_.w = 0;
-        decide_at_wall();
-        return;
-      case Event::off_wall:
-        state_.q = 0;
-        begins_ = true;
-        close_contact();
-        if (state_.w < 0) state_.w = 0;
-        decide_at_wall();
-        return;
-      case Event::release:
-        state_.q = state_.w = 0;
-        begins_ = true;
-        close_contact();
-        answer_.contacts.back().end_speed =
-            (1 + p_.nu) * magnitude(derivative(step_.acceleration)(end)) / (step_.h * step_.h * step_.h);
-        regime_ = Regime::flight;
-        return;
+    if (event || (alone() && (!dampers_[0].in_contact || slow_))) perturb();
+    if (compliant_) {
+      for (std::size_t i = 0; i < dampers_.size(); ++i)
+        if (meets[i]) touch(dampers_[i]);
+      released_ = false;
+    } else if (met) {
+      impact();
+      released_ = false;
+    }
+  }
+  void stop(Stop why) {
+    answer_.stop = why;
+    done_ = true;
+  }
+
+  void perturb() {
+    if (question_.noise == 0) return;
+    const auto event = std::uint64_t(++events_) << 8;
+    x_ = noisy(x_, event + 11);
+    v_ = noisy(v_, event + 12);
+    if (alone()) {
+      t_ = noisy(t_, event + 17);
+      Damper& one = dampers_[0];
+      if (!one.stuck) one.s = noisy(one.s, event + 13), one.d = noisy(one.d, event + 14);
+      return;
+    }
+    const Quad shift = noisy(1, event + 16) - 1;
+    for (Damper& each : dampers_) {
+      if (each.stuck) continue;
+      each.s = noisy(each.s, event + 13);
+      // All in one direction, too, so that those as far from the same wall remain so; not near a wall.
+      if (each.s < 0 || each.in_contact) each.d = noisy(each.d, event + 14 + (each.side > 0));
+      if (each.d > Quad(1e-3L) && each.clearance - each.d > Quad(1e-3L)) each.d += each.side * shift;
     }
   }
 
-  void move_to(Quad s) {
-    state_.t = s == 1 && step_.h == until_ - state_.t ? until_ : state_.t + step_.h * s;
-    state_.x = step_.x(s), state_.v = step_.v(s), state_.w = step_.w(s), state_.q = step_.q(s);
+  // The impulses of this instant, of all that are at a wall and do not leave it; and of those that were
+  // leaving it and that the wall overtakes.
+  void impact() {
+    for (;;) {
+      std::vector<Damper*> all;
+      for (Damper& each : dampers_)
+        if (each.d == 0 && each.s <= 0) all.push_back(&each);
+      if (std::none_of(all.begin(), all.end(), [](const Damper* each) { return each->s < 0; })) return;
+      if (question_.fault == Fault::not_released)
+        std::erase_if(all, [](const Damper* each) { return each->stuck; });
+      if (question_.fault == Fault::one_after_another)
+        all = {*std::find_if(all.begin(), all.end(), [](const Damper* each) { return each->s < 0; })};
+      strike(all);
+    }
   }
 
-  void add_forcing_work(Quad work) {
-    answer_.forcing_work += work;
-    answer_.forcing_turnover += magnitude(work);
+  void strike(const std::vector<Damper*>& all) {
+    const auto e_of = [&](const Damper& each) {
+      return question_.fault == Fault::restitution_of_first && each.side < 0 ? dampers_[0].e : each.e;
+    };
+    // p_i / nu_i = max(0, a_i J - (1 + e_i) s_i), and the residual J + sum a_i p_i rises with J.
+    const auto impulse = [&](const Damper& each, Quad jump) {
+      return std::max(Quad(0), each.side * jump - (1 + e_of(each)) * each.s);
+    };
+    const auto residual = [&](Quad jump) {
+      Quad sum = jump;
+      for (const Damper* each : all) sum += each->side * each->nu * impulse(*each, jump);
+      return sum;
+    };
+    std::vector<Quad> kinks;
+    for (const Damper* each : all) kinks.push_back(each->side * (1 + e_of(*each)) * each->s);
+    std::sort(kinks.begin(), kinks.end());
+    kinks.insert(kinks.begin(), kinks.front() - 1);
+    kinks.push_back(kinks.back() + 1);
+    std::size_t k = 1;
+    while (k + 1 < kinks.size() && residual(kinks[k]) < 0) ++k;
+    // Linear between kinks k - 1 and k: there those are active that are so in the middle.
+    const Quad middle = (kinks[k - 1] + kinks[k]) / 2;
+    Quad mass = 1, driven = 0;
+    for (const Damper* each : all)
+      if (impulse(*each, middle) > 0) {
+        mass += each->nu;
+        driven += each->side * each->nu * (1 + e_of(*each)) * each->s;
+      }
+    const Quad jump = driven / mass;
+    v_ += jump;
+    // What is not at a wall sees the jump, too: its velocity relative to the cavity.
+    for (Damper& each : dampers_)
+      if (std::find(all.begin(), all.end(), &each) == all.end() && !each.stuck) each.s -= each.side * jump;
+    for (Damper* each : all) {
+      const Quad before = each->s, e = e_of(*each);
+      const bool active = impulse(*each, middle) > 0;
+      const Quad impulse_by_mass = active ? impulse(*each, jump) : Quad(0);
+      each->s = active ? -e * before : before - each->side * jump;
+      if (before < 0) {
+        const Quad loss = each->nu * impulse_by_mass * (1 - e) * -before / 2;
+        each->chattering.push_back(answer_.impacts.size());
+        answer_.impacts.push_back(
+            {t_, number_of(*each), each->wall(), each->side * before, x_, loss, {}, active});
+      }
+    }
+    for (Damper* each : all)
+      if (each->s > 0) leave(*each, 0);
+    std::vector<Damper*> last;  // of a chattering
+    for (Damper* each : all)
+      if (chattering_ends(*each, e_of(*each))) last.push_back(each);
+    if (!last.empty()) join(last);
+  }
+
+  // Under the relative acceleration -a the rest of a chattering lasts 2 s / (a (1 - e)), but for the part by
+  // which a changes in it: by itself and, through the damper, by the impacts. It is taken once that is beyond
+  // quadruple rounding, but impacts that an engine may list, however little they matter, are listed here,
+  // too.
+  bool chattering_ends(Damper& each, Quad e) {
+    const Quad a = each.side * force() / joined_mass();
+    if (!(each.s > 0 && a > 0 && e < 1)) return false;
+    if (question_.fault == Fault::chattering_cut_short)
+      return each.s <= Quad(1e-4L) && each.s <= a * Quad(1e-8L);
+    const Quad rest = 2 * each.s / (a * (1 - e));
+    if (rest > Quad(1e-15L) * (1 + t_)) return false;
+    expand(step_by_rate / rate());
+    Quad change = 2 * zeta_ * each.nu * (1 + e) * each.s / ((1 + each.nu) * (1 - e)), power = rest / h_;
+    for (int n = 1; n <= 6; ++n, power *= rest / h_) change += magnitude(pa_.at[n]) / (h_ * h_) * power;
+    if (change > a * Quad(1e-10L) || rest * change > a * zero_within_rounding * (1 + t_)) return false;
+    each.rest = rest;
+    return true;
+  }
+  // The rest of a chattering: they give their momentum to the primary mass and what rests on the same wall.
+  // Joined at once they come to where they are after it, but for s times its length.
+  void join(const std::vector<Damper*>& last) {
+    const int side = last.front()->side;
+    Quad mass = 1, driven = 0;
+    for (const Damper& each : dampers_)
+      if (each.side == side && each.rests()) mass += each.nu;
+    for (const Damper* each : last) mass += each->nu, driven += each->nu * each->s;
+    const Quad jump = driven / mass;
+    for (Damper* each : last) {
+      answer_.dampers[number_of(*each)].chatter_loss += each->nu * each->s * (each->s - jump) / 2;
+      each->s = 0;
+    }
+    if (question_.fault == Fault::chattering_cut_short) return;
+    v_ += side * jump;
+    for (Damper& each : dampers_)
+      if (each.side != side || !each.rests()) each.s -= each.side * side * jump;
   }
 
   void work(Quad end) {
-    if (p_.zeta != 0)
-      answer_.viscous_work += 2 * p_.zeta * step_.h * integral_of_product(step_.v, step_.v, end);
-    if (p_.f0 != 0) add_forcing_work(step_.h * integral_of_product(step_.f, step_.v, end));
-    if (in_contact() && p_.damping != 0) {
-      const Quad loss = p_.nu * p_.damping * step_.h * integral_of_product(step_.w, step_.w, end);
-      (of_impact_ ? answer_.impacts.back().loss : answer_.contact_loss) += loss;
+    for (Damper& each : dampers_) {
+      if (!each.in_contact || each.damping == 0) continue;
+      const Polynomial slope = derivative(each.path);
+      const Quad loss = each.nu * each.damping * integral_of_product(slope, slope, end) / h_;
+      (each.impact ? answer_.impacts[*each.impact].loss : answer_.dampers[number_of(each)].contact_loss) +=
+          loss;
     }
+    if (zeta_ != 0) answer_.viscous_work += 2 * zeta_ * h_ * integral_of_product(pv_, pv_, end);
+    if (f0_ == 0) return;
+    const Quad work = h_ * integral_of_product(pf_, pv_, end);
+    answer_.forcing_work += work;
+    answer_.turnover += magnitude(work);
   }
 
   void note_peak(Quad t, Quad x) {
     if (magnitude(x) > peak_) peak_ = magnitude(x), peak_time_ = t;
   }
 
-  // Crossings, peaks and samples in (0, end]; returns where the run stops, else `end`.
+  // Zero crossings, peaks and samples in (0, end]; returns where the run stops, else `end`.
   Quad observe(Quad end) {
-    struct Seen {
-      Quad s;
-      enum { turn, crossing, sample } kind;
-    };
-    std::vector<Seen> seen;
-    const Quad t0 = state_.t, h = step_.h;
     // The side to which x goes, where it begins at zero by its first coefficient that is not: an event often
     // coincides with a crossing.
-    Polynomial x = step_.x;
+    Polynomial x = px_;
     clear_leading(x);
-    const int first = leading(x);
-    const int now = first < 0 ? 0 : int(side()) * sign_of(x.at[first]);
+    const int now = leading_sign(x);
     if (side_of_x_ == 0) side_of_x_ = now;
+    std::vector<std::pair<Quad, bool>> seen;  // whether a crossing
     // A crossing that the last step's end left to this one, by a rounding.
-    if (now != 0 && now != side_of_x_) seen.push_back({0, Seen::crossing});
-    for (const Root& root : roots_after_start(x))
-      if (root.s <= end) seen.push_back({root.s, Seen::crossing});
-    for (const Root& root : roots_after_start(step_.v))
-      if (root.s <= end) seen.push_back({root.s, Seen::turn});
-    while (sample_ < question_.samples.size()) {
-      const Quad t = question_.samples[sample_];
-      if (t > t0 + h * end) break;
-      const Quad s = std::min((t - t0) / h, end);
-      seen.push_back({std::max(s, Quad(0)), Seen::sample});
-      ++sample_;
-    }
-    std::stable_sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) { return a.s < b.s; });
-    for (const Seen& each : seen) {
-      const Quad t = t0 + h * each.s;
-      switch (each.kind) {
-        case Seen::turn:
-          note_peak(t, step_.x(each.s));
-          break;
-        case Seen::sample: {
-          const Quad q = step_.q(each.s);
-          answer_.samples.push_back({side() * step_.x(each.s), side() * step_.v(each.s),
-                                     mirrored_ ? 1 - q : q, side() * step_.w(each.s), in_contact()});
-          break;
-        }
-        case Seen::crossing:
-          answer_.half_cycles.push_back({t, peak_time_, peak_, magnitude(step_.v(each.s))});
-          side_of_x_ = -side_of_x_;
-          if (question_.scene.until_amplitude && peak_ < Quad(*question_.scene.until_amplitude)) {
-            answer_.stop = Stop::amplitude;
-            done_ = true;
-            return each.s;
-          }
-          peak_ = 0, peak_time_ = t;
-          break;
+    if (now != 0 && now != side_of_x_) seen.push_back({0, true});
+    for (const Root& root : roots_after_start(x)) seen.push_back({root.s, true});
+    for (const Root& root : roots_after_start(pv_)) seen.push_back({root.s, false});
+    std::stable_sort(seen.begin(), seen.end(), [](auto& a, auto& b) { return a.first < b.first; });
+    for (const auto& [s, crossing] : seen) {
+      if (s > end) break;
+      const Quad t = t_ + h_ * s;
+      if (!crossing) {
+        note_peak(t, px_(s));
+        continue;
       }
+      answer_.half_cycles.push_back({t, peak_time_, peak_, magnitude(pv_(s))});
+      side_of_x_ = -side_of_x_;
+      if (question_.scene.until_amplitude && peak_ < Quad(*question_.scene.until_amplitude)) {
+        stop(Stop::amplitude);
+        end = s;
+        break;
+      }
+      peak_ = 0, peak_time_ = t;
     }
-    note_peak(t0 + h * end, step_.x(end));
+    note_peak(t_ + h_ * end, px_(end));
+    for (; answer_.samples.size() < question_.samples.size();) {
+      const Quad t = question_.samples[answer_.samples.size()];
+      if (t > t_ + h_ * end) break;
+      const Quad s = std::max(std::min((t - t_) / h_, end), Quad(0));
+      Sample sample{px_(s), pv_(s), {}, {}};
+      for (const Damper& each : dampers_) {
+        const Quad d = each.path(s);
+        sample.y.push_back(each.side > 0 ? d : each.clearance - d);
+        sample.w.push_back(each.side * speed_of(each, s));
+        sample.in_contact = sample.in_contact || each.in_contact;
+      }
+      answer_.samples.push_back(sample);
+    }
     return end;
   }
 
-  void finish() {
-    answer_.end_time = state_.t;
-    answer_.final = energy();
-    if (contact_open_) answer_.contacts.back().end = state_.t;
-  }
-
   const Question& question_;
-  reference::Random random_;
-  bool noisy_;
-  Parameters p_;
-  std::optional<SlowManifold> slow_;
-  State state_;
-  Regime regime_ = Regime::flight;
-  Step step_;
-  bool mirrored_ = false, done_ = false, begins_ = true;
-  bool contact_open_ = false, of_impact_ = false;
-  std::size_t chatter_begin_ = 0;
+  bool compliant_, done_ = false;
+  Quad zeta_ = 0, f0_ = 0, omega_ = 0, until_ = 0;
+  Quad t_ = 0, x_ = 0, v_ = 0;
+  std::vector<Damper> dampers_;
+  bool slow_ = false;  // all contacts are without their fast modes
+  bool slow_motions_found_ = false;
+  Quad changed_ = 0;        // when a contact last began or ended
+  std::vector<int> sides_;  // of the contacts that slow motions were last looked for
+  Quad h_ = 0;
+  Polynomial px_, pv_, pf_, pa_;  // of the step: x, x', the force, h^2 x''
+  bool released_ = false;
   int side_of_x_ = 0;
   Quad peak_ = 0, peak_time_ = 0;
-  std::size_t sample_ = 0;
-  Quad until_ = 0;
+  std::int64_t events_ = 0;
   Answer answer_;
 };
 
 }  // namespace
 
 Answer answer_to(const Question& question) { return Integrator(question).run(); }
+
+Quad Answer::impact_loss() const {
+  Quad sum = 0;
+  for (const Impact& each : impacts) sum += each.loss;
+  return sum;
+}
+Quad Answer::contact_loss() const {
+  Quad sum = 0;
+  for (const DamperEnergy& each : dampers) sum += each.contact_loss;
+  return sum;
+}
+Quad Answer::chatter_loss() const {
+  Quad sum = 0;
+  for (const DamperEnergy& each : dampers) sum += each.chatter_loss;
+  return sum;
+}
+Quad Answer::residual() const {
+  return initial.total() + forcing_work - final.total() - losses() - viscous_work;
+}
 
 }  // namespace oracle

@@ -15,16 +15,18 @@ std::string lines_of(const Answer& answer) {
     std::string text;
   };
   std::vector<Line> lines;
-  const auto name = [](impact_damper::Wall wall) {
-    return wall == impact_damper::Wall::left ? "left" : "right";
+  const bool several = answer.dampers.size() > 1;
+  const auto name = [several](impact_damper::Wall wall, int damper) {
+    return (wall == impact_damper::Wall::left ? "left" : "right") +
+           (several ? ", damper " + std::to_string(damper) : "");
   };
   for (const Impact& each : answer.impacts)
-    lines.push_back({each.time, std::string("impact ") + name(each.wall) + " speed " +
+    lines.push_back({each.time, "impact " + name(each.wall, each.damper) + " speed " +
                                     text(each.relative_velocity) + " at x " + text(each.displacement) +
                                     " loss " + text(each.loss, 12)});
   for (const Contact& each : answer.contacts) {
-    lines.push_back({each.begin, std::string("contact begins, ") + name(each.wall)});
-    lines.push_back({each.end, std::string("contact ends, ") + name(each.wall)});
+    lines.push_back({each.begin, "contact begins, " + name(each.wall, each.damper)});
+    lines.push_back({each.end, "contact ends, " + name(each.wall, each.damper)});
   }
   for (std::size_t i = 0; i < answer.half_cycles.size(); ++i) {
     const HalfCycle& each = answer.half_cycles[i];
@@ -37,15 +39,9 @@ std::string lines_of(const Answer& answer) {
   const char* const stops[] = {"time", "amplitude", "effort"};
   all += text(answer.end_time) + "  end (" + stops[int(answer.stop)] + "), steps " +
          std::to_string(answer.steps) + "\n";
-  Quad losses = answer.contact_loss + answer.chatter_loss;
-  for (const Impact& each : answer.impacts) losses += each.loss;
-  all +=
-      "energy: initial " + text(answer.initial.total()) + " forcing " + text(answer.forcing_work) +
-      " final " + text(answer.final.total()) + " viscous " + text(answer.viscous_work) + " impacts " +
-      text(losses) + " residual " +
-      text(answer.initial.total() + answer.forcing_work - answer.final.total() - losses - answer.viscous_work,
-           3) +
-      "\n";
+  all += "energy: initial " + text(answer.initial.total()) + " forcing " + text(answer.forcing_work) +
+         " final " + text(answer.final.total()) + " viscous " + text(answer.viscous_work) + " impacts " +
+         text(answer.losses()) + " residual " + text(answer.residual(), 3) + "\n";
   return all;
 }
 }  // namespace oracle

@@ -32,7 +32,7 @@ def copied() -> Path:
     """A copy of what the report is made from."""
     copy = FOLDER / "source"
     shutil.rmtree(copy, ignore_errors=True)
-    for part in ("paper", "wasm", "data", "docs", "figures", "bench/results", "tests/stress/results"):
+    for part in ("paper", "src/wasm", "data", "docs", "figures", "bench/results", "tests/stress/results"):
         shutil.copytree(SOURCE / part, copy / part, ignore=shutil.ignore_patterns("reference"))
     shutil.copy(SOURCE / "CMakeLists.txt", copy)
     return copy

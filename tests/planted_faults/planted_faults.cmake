@@ -40,7 +40,7 @@ function(replaced text name file from to)
   set(${text} "${result}" PARENT_SCOPE)
 endfunction()
 function(plant name file from to)
-  set(path ${FOLDER}/src/impact_damper/${file})
+  set(path ${FOLDER}/src/${file})
   file(READ ${path} sound)
   set(faulty "${sound}")
   replaced(faulty ${name} ${file} "${from}" "${to}")
@@ -58,36 +58,33 @@ verdicts(0 "no fault" "claims:")
 set(CODE 1)
 set(SAID "claims:")
 
-plant("loss factor per cycle" analysis/loss_factor.cpp
+plant("loss factor per cycle" impact_damper/analysis/loss_factor.cpp
       "loss.eta.push_back(-2 *"
       "loss.eta.push_back(-2 * 2 * std::numbers::pi *")
 # A wall that cannot pull: contact ends where its force c q' + K q vanishes. What impacts take of the energy then
 # is not what the force puts in.
 set(CODE 3)
 set(SAID "contradicts the rest of the response")
-plant("contact force clipped at zero" motion/contact.hpp
-      "    if (start_.y == wall_) {
+plant("contact force clipped at zero" include/impact_damper/motion/contact.hpp
+      "    if (start_.y == wall_ && (start_.w != 0 || pressed_until() == 0)) {
       std::optional<End> end;"
       "    if (false) {
       std::optional<End> end;"
-      "    const ContactState<Real> slow = slow_at(t), fast = fast_at(t), both = sum_at(t, slow, fast);
-    LocalEnclosure<Real> ahead =
-        look(instant_of_q(slow, system_.slow, system_.drive_slow, t),
-             instant_of_q(fast, system_.fast, system_.drive_fast, t), 0, inward_, span);
-    ahead.whole.g = inward_ * both.q;
-    ahead.whole.g1 = inward_ * both.w;
-    return ahead;"
-      "    const auto q = instant_of_q(slow_at(t), system_.slow, system_.drive_slow, t),
-               r = instant_of_q(fast_at(t), system_.fast, system_.drive_fast, t);
-    const auto force = [&](std::size_t n) -> Real {
-      return inward_ * (system_.stiffness * (q[n] + r[n]) + system_.damping * (q[n + 1] + r[n + 1]));
-    };
-    const Real third = system_.stiffness * (q.bound(3, span) + r.bound(3, span)) +
-                       system_.damping * (q.bound(4, span) + r.bound(4, span));
-    return {{force(0), force(1), force(2), third}, {}, std::numeric_limits<Real>::infinity()};")
+      "[&](const Real& t) { return depth(t, search.span); }"
+      "[&](const Real& t) -> LocalEnclosure<Real> {
+      const auto now = Motion::instants_of_q(t);
+      const auto force = [&](std::size_t n) -> Real {
+        return inward_ * (system_.stiffness * (now.slow[n] + now.fast[n]) +
+                          system_.damping * (now.slow[n + 1] + now.fast[n + 1]));
+      };
+      const Real span = search.span;
+      const Real third = system_.stiffness * (now.slow.bound(3, span) + now.fast.bound(3, span)) +
+                         system_.damping * (now.slow.bound(4, span) + now.fast.bound(4, span));
+      return {{force(0), force(1), force(2), third}, {}, std::numeric_limits<Real>::infinity()};
+    }")
 set(CODE 1)
 set(SAID "claims:")
 # Last, as most is compiled anew with this header: it need not be put right for another.
-plant("restitution off by 0.05" motion/wall.hpp
+plant("restitution off by 0.05" include/impact_damper/motion/wall.hpp
       "-logarithm(restitution)"
       "-logarithm(Real(restitution - Real(0.05)))")

@@ -18,8 +18,8 @@
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
+#include "impact_damper/responses/response_file.hpp"
 #include "impact_damper/simulate.hpp"
-#include "impact_damper/steady/response_file.hpp"
 
 namespace {
 

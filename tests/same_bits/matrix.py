@@ -67,8 +67,8 @@ BUILDS = {name: [f"-DCMAKE_CXX_COMPILER={name.split()[0]}", "-DCMAKE_BUILD_TYPE=
 SANITIZED = "clang++ -O2 with sanitizers"
 BUILDS[SANITIZED] = ["--preset", "sanitize"]  # as `make sanitize`
 LINUX = ["aarch64", "riscv64", "s390x"]
-BUILDS |= {name: ["--toolchain", SOURCE / "toolchains/linux.cmake", f"-DMACHINE={name}"] for name in LINUX}
-BUILDS["WebAssembly"] = ["--toolchain", SOURCE / "toolchains/wasm.cmake", "-DCMAKE_BUILD_TYPE=MinSizeRel"]  # as `make wasm`
+BUILDS |= {name: ["--toolchain", SOURCE / "src/toolchains/linux.cmake", f"-DMACHINE={name}"] for name in LINUX}
+BUILDS["WebAssembly"] = ["--toolchain", SOURCE / "src/toolchains/wasm.cmake", "-DCMAKE_BUILD_TYPE=MinSizeRel"]  # as `make wasm`
 # What runs the programs of other machines.
 RUNNERS = {**{name: [f"qemu-{name}"] for name in LINUX}, "WebAssembly": ["node"]}
 BRIEF = [SANITIZED, "s390x"]

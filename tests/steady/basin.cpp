@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "impact_damper/responses/response_file.hpp"
 #include "impact_damper/simulate.hpp"
-#include "impact_damper/steady/response_file.hpp"
 
 namespace {
 

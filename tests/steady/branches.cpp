@@ -1,4 +1,4 @@
-#include "impact_damper/steady/branches.hpp"
+#include "impact_damper/orbits/branches.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "forced_scene.hpp"
-#include "impact_damper/steady/two_impact_orbit.hpp"
+#include "impact_damper/orbits/two_impact_orbit.hpp"
 
 using namespace impact_damper;
 

@@ -1,4 +1,4 @@
-#include "impact_damper/steady/lyapunov.hpp"
+#include "impact_damper/orbits/lyapunov.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,9 +8,9 @@
 
 #include "forced_scene.hpp"
 #include "impact_damper/motion/wall.hpp"
+#include "impact_damper/orbits/orbits.hpp"
+#include "impact_damper/orbits/two_impact_orbit.hpp"
 #include "impact_damper/simulate.hpp"
-#include "impact_damper/steady/orbits.hpp"
-#include "impact_damper/steady/two_impact_orbit.hpp"
 
 using namespace impact_damper;
 

@@ -1,4 +1,4 @@
-#include "impact_damper/steady/poincare_map.hpp"
+#include "impact_damper/orbits/poincare_map.hpp"
 
 #include <doctest/doctest.h>
 
@@ -162,7 +162,8 @@ TEST_CASE("a mass that is pressed against its wall at phase 0 only adds to the m
       CHECK(row[3] == doctest::Approx(share * row[1]).epsilon(1e-9).scale(1e-3));
     }
     ++began;
-    if (!(image.state.dampers[0].w == 0 && (image.state.dampers[0].y == 0 || image.state.dampers[0].y == 1))) continue;
+    if (!(image.state.dampers[0].w == 0 && (image.state.dampers[0].y == 0 || image.state.dampers[0].y == 1)))
+      continue;
     for (const std::size_t row : {2, 3})
       for (const double entry : image.by_state[row]) CHECK(entry == 0);
     ++ended;

@@ -1,6 +1,6 @@
 // Response files read back as they were written, and what is altered in them is noticed: by the digest, and
 // where that is made anew by what follows from the rest.
-#include "impact_damper/steady/response_file.hpp"
+#include "impact_damper/responses/response_file.hpp"
 
 #include <doctest/doctest.h>
 

@@ -8,8 +8,8 @@
 #include <complex>
 #include <numbers>
 
+#include "impact_damper/responses/response_file.hpp"
 #include "impact_damper/simulate.hpp"
-#include "impact_damper/steady/response_file.hpp"
 #include "list_of_one.hpp"
 
 namespace {

@@ -1,4 +1,4 @@
-#include "impact_damper/steady/two_impact_orbit.hpp"
+#include "impact_damper/orbits/two_impact_orbit.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "impact_damper/analysis/theory.hpp"
+#include "impact_damper/orbits/poincare_map.hpp"
 #include "impact_damper/simulate.hpp"
-#include "impact_damper/steady/poincare_map.hpp"
 #include "reference.hpp"
 
 using namespace impact_damper;

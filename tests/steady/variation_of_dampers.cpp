@@ -1,4 +1,4 @@
-#include "impact_damper/steady/variation_of_dampers.hpp"
+#include "impact_damper/orbits/variation_of_dampers.hpp"
 
 #include <doctest/doctest.h>
 
@@ -12,8 +12,8 @@
 
 #include "engines/observed.hpp"
 #include "impact_damper/motion/wall.hpp"
+#include "impact_damper/orbits/lyapunov.hpp"
 #include "impact_damper/simulate.hpp"
-#include "impact_damper/steady/lyapunov.hpp"
 #include "impact_damper/steady/steady_state.hpp"
 #include "reference.hpp"
 

@@ -1,4 +1,4 @@
-#include "impact_damper/sweeps/kept_quantities.hpp"
+#include "application/sweeps/kept_quantities.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,8 +9,8 @@
 #include "impact_damper/analysis/design.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/theory.hpp"
+#include "impact_damper/orbits/lyapunov.hpp"
 #include "impact_damper/simulate.hpp"
-#include "impact_damper/steady/lyapunov.hpp"
 
 using namespace impact_damper;
 

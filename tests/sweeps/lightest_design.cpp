@@ -1,4 +1,4 @@
-#include "impact_damper/sweeps/lightest_design.hpp"
+#include "application/sweeps/lightest_design.hpp"
 
 #include <doctest/doctest.h>
 
@@ -61,7 +61,7 @@ double sampled_time(const Scene& scene, const Scales& scales, double amplitude) 
   double peak = std::abs(x[0]), at = 0;
   for (std::size_t i = 1; i < x.size(); ++i) {
     if (std::signbit(x[i]) != std::signbit(x[i - 1])) {
-      if (peak * scales.length < amplitude) return at * scales.time();
+      if (peak * scales.length < amplitude) return at * scales.of(Dimension::time);
       peak = 0;
     }
     if (std::abs(x[i]) > peak) peak = std::abs(x[i]), at = run.history->time[i];
@@ -88,7 +88,8 @@ Drawn drawn_of(const DesignQuestion& question, double mass, double clearance, st
     const Scales scales = scales_of(scene);
     double time = HUGE_VAL;
     for (std::size_t n = rows.amplitude.size(); n-- > 0;)
-      if (rows.amplitude[n] * scales.length < question.amplitude) time = rows.peak_time[n] * scales.time();
+      if (rows.amplitude[n] * scales.length < question.amplitude)
+        time = rows.peak_time[n] * scales.of(Dimension::time);
     found.late += time <= question.time ? 0 : 1;
     found.times.push_back(time);
   }
@@ -190,7 +191,7 @@ TEST_CASE("a scene with unit scales is the dimensionless scene") {
   SceneInUnits units = with_unit_scales(scene);
   units.until_seconds = 1;
   CHECK(dimensionless(units) == scene);
-  CHECK(scales_of(units).time() == 1);
+  CHECK(scales_of(units).of(Dimension::time) == 1);
 }
 
 TEST_CASE("the check has other draws than the search, on both sides of the design's numbers") {
@@ -301,7 +302,8 @@ TEST_CASE("what a check says of a design is counted from its neighbours") {
       const auto below = std::ranges::find_if(
           rows.amplitude, [&](double a) { return a * run.scales->length < question.amplitude; });
       REQUIRE(below != rows.amplitude.end());
-      times.push_back(rows.peak_time[std::size_t(below - rows.amplitude.begin())] * run.scales->time());
+      times.push_back(rows.peak_time[std::size_t(below - rows.amplitude.begin())] *
+                      run.scales->of(Dimension::time));
     }
     std::ranges::sort(times);
     CHECK(*check.slowest == doctest::Approx(times.back()).epsilon(1e-14));

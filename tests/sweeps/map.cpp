@@ -1,12 +1,12 @@
 // What a map computes beside its cells, which tests/cli/map.py finds by another program.
-#include "impact_damper/sweeps/map.hpp"
+#include "application/sweeps/map.hpp"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "impact_damper/sweeps/plan_file.hpp"
+#include "application/sweeps/plan_file.hpp"
 
 using namespace impact_damper;
 

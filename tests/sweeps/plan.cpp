@@ -1,4 +1,4 @@
-#include "impact_damper/sweeps/plan.hpp"
+#include "application/sweeps/plan.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "application/sweeps/plan_file.hpp"
 #include "impact_damper/io/json_writer.hpp"
-#include "impact_damper/sweeps/plan_file.hpp"
 
 using namespace impact_damper;
 

@@ -1,4 +1,4 @@
-#include "impact_damper/sweeps/sampling.hpp"
+#include "application/sweeps/sampling.hpp"
 
 #include <doctest/doctest.h>
 

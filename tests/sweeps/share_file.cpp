@@ -1,4 +1,4 @@
-#include "impact_damper/sweeps/share_file.hpp"
+#include "application/sweeps/share_file.hpp"
 
 #include <doctest/doctest.h>
 #include <sys/syscall.h>
@@ -8,9 +8,9 @@
 #include <fstream>
 #include <sstream>
 
+#include "application/sweeps/plan_file.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/io/json_reader.hpp"
-#include "impact_damper/sweeps/plan_file.hpp"
 
 using namespace impact_damper;
 namespace fs = std::filesystem;

@@ -11,17 +11,15 @@ namespace {
 std::string begins_outside(const std::string& mass, double y0, double clearance, double wall_stiffness,
                            double x0, const std::optional<Scales>& scales, std::string_view unit_of_depth) {
   const double depth = std::max(-y0, y0 - clearance), energy = wall_stiffness * depth * depth / 2;
-  const auto text = [](double value) { return rounded_text(value, 5); };
-  const auto with_unit = [&](double value, double scale, std::string_view unit) {
-    return scales ? text(value * scale) + ' ' + std::string(unit) : text(value);
+  const auto text_of = [&](double value, Dimension dimension) {
+    return with_unit(rounded_text(value * scale_of(dimension, scales), 5),
+                     scales ? unit_of(dimension, true) : "");
   };
-  const double length = scales ? scales->length : 1;
-  return mass + " begins " + with_unit(depth, length, "mm") + (scales ? "" : std::string(unit_of_depth)) +
-         " outside its cavity, which reaches from 0 to " + with_unit(clearance, length, "mm") + " (" +
-         (scales ? "secondary_displacement" : "y0") + " is " + with_unit(y0, length, "mm") +
-         "): a compliant wall there holds an energy of " +
-         with_unit(energy, scales ? scales->energy() : 1, "J") + ", beside " +
-         with_unit(x0 * x0 / 2, scales ? scales->energy() : 1, "J") + " in the primary spring";
+  return mass + " begins " + text_of(depth, Dimension::length) + (scales ? "" : std::string(unit_of_depth)) +
+         " outside its cavity, which reaches from 0 to " + text_of(clearance, Dimension::length) + " (" +
+         (scales ? "secondary_displacement" : "y0") + " is " + text_of(y0, Dimension::length) +
+         "): a compliant wall there holds an energy of " + text_of(energy, Dimension::energy) + ", beside " +
+         text_of(x0 * x0 / 2, Dimension::energy) + " in the primary spring";
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ std::vector<Problem> incompatibilities_of(const Scene& scene, const Engine& engi
                                                    ", its clearance, as walls are rigid, got " +
                                                    number_text(damper.y0)});
   }
-  if (const Cem* const cem = std::get_if<Cem>(&engine)) problems = problems_of(scene, resolved(scene, *cem));
+  const Cem* const cem = std::get_if<Cem>(&engine);
+  if (cem && cem->time_step) problems = problems_of(scene, *cem);
   if (one && has_rigid_walls(engine) && !within(0, 1).allows(scene.damper().y0)) {
     problems.push_back({"y0", within(0, 1).describe("must be") + " with the " + std::string(name_of(engine)) +
                                   " engine, whose walls are rigid, got " + number_text(scene.damper().y0)});

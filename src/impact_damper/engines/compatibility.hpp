@@ -8,7 +8,7 @@
 namespace impact_damper {
 
 // One entry per offending field, of the scene or of the engine, as problems_of(Scene). Both must be free of
-// problems by themselves.
+// problems by themselves, and the engine complete: without a time step cem is not compared.
 std::vector<Problem> incompatibilities_of(const Scene& scene, const Engine& engine);
 
 }  // namespace impact_damper

@@ -21,15 +21,15 @@ extern template Outcome run_exact<Contact<double>>(const ForcedModes&, const For
                                                    const Exact&, Recorder&);
 extern template Outcome run_exact<ContactWithoutModes<double>>(const ForcedModes&, const ForcedSystem&,
                                                                const Scene&, const Exact&, Recorder&);
-extern template Outcome run_exact_dampers<double>(const Scene&, const Exact&, Recorder&);
+extern template Outcome run_exact_dampers<double>(const Checked&, Recorder&);
 extern template Outcome run_exact_dampers(const ForcedSystem&, const Scene&, const Exact&, Recorder&,
                                           const ModesOfDampers<double, Forcing<double>>&);
 extern template Outcome run_restitution(const FreeSystem&, const Scene&, const Restitution&, Recorder&);
 extern template Outcome run_restitution(const ForcedSystem&, const Scene&, const Restitution&, Recorder&);
-extern template Outcome run_restitution_dampers<double>(const Scene&, const Restitution&, Recorder&);
+extern template Outcome run_restitution_dampers<double>(const Checked&, Recorder&);
 extern template Outcome run_restitution_dampers(const ForcedSystem&, const Scene&, const Restitution&,
                                                 Recorder&);
-extern template Outcome run_cem<double>(const Scene&, const Cem&, Recorder&);
-extern template Outcome run_cem_dampers<double>(const Scene&, const Cem&, Recorder&);
+extern template Outcome run_cem<double>(const Checked&, Recorder&);
+extern template Outcome run_cem_dampers<double>(const Checked&, Recorder&);
 
 }  // namespace impact_damper

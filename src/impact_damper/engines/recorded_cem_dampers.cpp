@@ -2,6 +2,6 @@
 
 namespace impact_damper {
 
-template Outcome run_cem_dampers<double>(const Scene&, const Cem&, Recorder&);
+template Outcome run_cem_dampers<double>(const Checked&, Recorder&);
 
 }  // namespace impact_damper

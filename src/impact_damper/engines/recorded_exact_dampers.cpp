@@ -2,7 +2,7 @@
 
 namespace impact_damper {
 
-template Outcome run_exact_dampers<double>(const Scene&, const Exact&, Recorder&);
+template Outcome run_exact_dampers<double>(const Checked&, Recorder&);
 template Outcome run_exact_dampers(const ForcedSystem&, const Scene&, const Exact&, Recorder&,
                                    const ModesOfDampers<double, Forcing<double>>&);
 

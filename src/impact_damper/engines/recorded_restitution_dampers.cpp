@@ -2,7 +2,7 @@
 
 namespace impact_damper {
 
-template Outcome run_restitution_dampers<double>(const Scene&, const Restitution&, Recorder&);
+template Outcome run_restitution_dampers<double>(const Checked&, Recorder&);
 template Outcome run_restitution_dampers(const ForcedSystem&, const Scene&, const Restitution&, Recorder&);
 
 }  // namespace impact_damper

@@ -111,8 +111,8 @@ class JsonWriter {
 
   void value(double number) {
     if (!std::isfinite(number)) {
-      throw NumericalError("the " + of_ + " went astray: a number in its \"" + name_ + "\" is " +
-                           number_text(number));
+      throw NumericalError("a number in \"" + name_ + "\" of the " + of_ +
+                           " is not finite: " + number_text(number));
     }
     append_number(text_, number);
   }

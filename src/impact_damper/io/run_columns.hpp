@@ -29,8 +29,7 @@ enum class Order { any, ascending, ascending_for_each_damper };
 // All that is known of a column, a single number or a nested object, except which member holds its value.
 struct RunColumnInfo {
   std::string_view name{};
-  // Null for objects, counts, angles, ratios, and what stands for a wall or a damper.
-  double SiUnits::*unit = nullptr;
+  Dimension dimension = Dimension::ratio;  // also of objects, counts, and what stands for a wall or a damper
   // Allowed range of its numbers. A damper's must not exceed the number of dampers either.
   NumberRange range{};
   Order order = Order::any;
@@ -49,13 +48,13 @@ RunColumn(Value Owner::*, RunColumnInfo) -> RunColumn<Owner, Value>;
 namespace detail {
 
 constexpr RunColumnInfo instant(std::string_view name, Order order = Order::ascending) {
-  return {.name = name, .unit = &SiUnits::time, .range = at_least(0), .order = order};
+  return {.name = name, .dimension = Dimension::time, .range = at_least(0), .order = order};
 }
 constexpr RunColumnInfo length(std::string_view name, NumberRange range = {}) {
-  return {.name = name, .unit = &SiUnits::length, .range = range};
+  return {.name = name, .dimension = Dimension::length, .range = range};
 }
-constexpr RunColumnInfo velocity(std::string_view name) { return {.name = name, .unit = &SiUnits::velocity}; }
-constexpr RunColumnInfo energy(std::string_view name) { return {.name = name, .unit = &SiUnits::energy}; }
+constexpr RunColumnInfo velocity(std::string_view name) { return {name, Dimension::velocity}; }
+constexpr RunColumnInfo energy(std::string_view name) { return {name, Dimension::energy}; }
 constexpr RunColumnInfo count(std::string_view name) { return {.name = name, .range = at_least(0)}; }
 inline constexpr RunColumnInfo wall{.name = "wall", .range = within(0, 1)};
 inline constexpr RunColumnInfo damper{

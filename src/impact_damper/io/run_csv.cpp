@@ -1,5 +1,4 @@
 // A section of a run as CSV: one table of columns of equal length.
-#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <stdexcept>
@@ -12,16 +11,9 @@
 namespace impact_damper {
 namespace {
 
-// Returns "_m_per_s" for a velocity, and so on.
-std::string_view suffix_of(double SiUnits::*unit) {
-  if (unit == nullptr) return "";
-  const std::string_view name = std::ranges::find(si_units, unit, &SiUnit::member)->name;
-  return name.substr(name.find('_'));
-}
-
 class CsvTable {
  public:
-  CsvTable(const std::optional<SiUnits>& units, bool has_list) : units_(units), has_list_(has_list) {}
+  CsvTable(const std::optional<Scales>& scales, bool has_list) : scales_(scales), has_list_(has_list) {}
 
   // Makes the table of a section, unless there is one already. Energies are no table.
   template <class Section>
@@ -42,17 +34,17 @@ class CsvTable {
       if constexpr (PartsOfDampers<std::remove_cvref_t<decltype(value)>>) {
         for (std::size_t i = 0; i < value.size(); ++i) add(value[i], '_' + std::to_string(i + 1));
       } else {
-        add_column(std::string(info.name) + of_damper, info.unit, value);
+        add_column(std::string(info.name) + of_damper, info.dimension, value);
       }
     });
   }
   template <typename Element>
-  void add_column(const std::string& name, double SiUnits::*unit, const std::vector<Element>& values) {
+  void add_column(const std::string& name, Dimension dimension, const std::vector<Element>& values) {
     const bool first = lines_.empty();
     if (first) lines_.resize(1 + values.size());
     if (!first) lines_[0] += ',';
-    lines_[0].append(name).append(units_ ? suffix_of(unit) : "");
-    const double scale = units_ && unit ? *units_.*unit : 1;
+    lines_[0].append(name).append(scales_ ? suffix_of(dimension) : "");
+    const double scale = scales_ ? scales_->in_si(dimension) : 1;
     for (std::size_t row = 0; row < values.size(); ++row) {
       if (!first) lines_[row + 1] += ',';
       append(lines_[row + 1], name, in_file(values[row]), scale);
@@ -60,8 +52,8 @@ class CsvTable {
   }
   static void append(std::string& line, const std::string& name, double value, double scale) {
     if (!std::isfinite(value * scale))
-      throw NumericalError("the run went astray: a number in its \"" + name + "\" is " +
-                           number_text(value * scale));
+      throw NumericalError("a number in \"" + name +
+                           "\" of the run is not finite: " + number_text(value * scale));
     append_number(line, value * scale);
   }
   static void append(std::string& line, const std::string& name, const std::optional<double>& value,
@@ -72,15 +64,15 @@ class CsvTable {
     append_number(line, value);
   }
 
-  const std::optional<SiUnits>& units_;
+  const std::optional<Scales>& scales_;
   bool has_list_;
   std::vector<std::string> lines_;
 };
 
 }  // namespace
 
-std::string run_csv(const Run& run, const std::optional<SiUnits>& units) {
-  CsvTable table(units, has_list(run));
+std::string run_csv(const Run& run, const std::optional<Scales>& scales) {
+  CsvTable table(scales, has_list(run));
   for_each_column(run, has_list(run), table);
   std::string text = table.text();
   if (text.empty())

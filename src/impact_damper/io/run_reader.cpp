@@ -249,10 +249,10 @@ void check_units(ObjectReader& root) {
   std::optional<ObjectReader> section = root.optional_object("units");
   if (!section) return;
   ObjectReader& object = *section;
-  SiUnits units{};
+  std::array<double, dimensions_in_files.size()> units{};
   bool all_read = true;
-  for (const SiUnit& unit : si_units)
-    all_read = object.required(unit.name, units.*unit.member, above(0)) && all_read;
+  for (std::size_t i = 0; i < units.size(); ++i)
+    all_read = object.required(key_of(dimensions_in_files[i]), units[i], above(0)) && all_read;
   if (!all_read) return;
   const auto must_be = [&](std::string_view name, double given, double wanted, std::string_view what) {
     constexpr double rounding = 1e-12;  // some thousand roundings of what a few operations make of the scales
@@ -260,10 +260,10 @@ void check_units(ObjectReader& root) {
     object.reject(
         name, "must be " + std::string(what) + ", " + number_text(wanted) + ", got " + number_text(given));
   };
-  must_be("velocity_m_per_s", units.velocity, units.length / units.time, "length_m divided by time_s");
-  must_be("energy_J", units.energy, units.mass * units.velocity * units.velocity,
-          "mass_kg times velocity_m_per_s squared");
-  must_be("force_N", units.force, units.energy / units.length, "energy_J divided by length_m");
+  const auto [length, time, velocity, mass, force, energy] = units;
+  must_be("velocity_m_per_s", velocity, length / time, "length_m divided by time_s");
+  must_be("energy_J", energy, mass * velocity * velocity, "mass_kg times velocity_m_per_s squared");
+  must_be("force_N", force, energy / length, "energy_J divided by length_m");
 }
 
 bool is_sealed(std::string_view text) {

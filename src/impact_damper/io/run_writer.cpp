@@ -64,9 +64,9 @@ void write_engine(JsonWriter& out, const Engine& engine) {
   out.close();
 }
 
-void write_units(JsonWriter& out, const SiUnits& units) {
+void write_units(JsonWriter& out, const Scales& scales) {
   out.open_object("units", Layout::one_line);
-  for (const SiUnit& unit : si_units) out.field(unit.name, units.*unit.member);
+  for (const Dimension each : dimensions_in_files) out.field(key_of(each), scales.in_si(each));
   out.close();
 }
 
@@ -92,7 +92,7 @@ std::string run_text(const Run& run, const std::optional<Scales>& scales) {
   write_engine(out, run.engine);
   out.field("stop_reason", name_of(run.stop_reason));
   out.field("end_time", run.end_time);
-  if (scales) write_units(out, si_units_of(*scales));
+  if (scales) write_units(out, *scales);
   write_columns(out, run, has_list(run));
   write_provenance(out);
   return sealed(out.finish());

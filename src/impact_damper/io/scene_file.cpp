@@ -5,8 +5,7 @@
 #include <limits>
 
 #include "impact_damper/base/number_text.hpp"
-#include "impact_damper/io/json_reader.hpp"
-#include "impact_damper/io/json_writer.hpp"
+#include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/run_file.hpp"
 
 namespace impact_damper {
@@ -24,27 +23,20 @@ GivenKeys given_keys(const ObjectReader& object) {
   };
   const auto is_in_both = [](std::string_view name) {
     const auto* const field = std::ranges::find(unit_fields, name, &UnitField::name);
-    return field != unit_fields.end() && field->also_dimensionless;
+    return field != unit_fields.end() && field->dimension == Dimension::ratio;
   };
   for (const UnitField& field : unit_fields)
-    if (!field.also_dimensionless) add(given.in_units, field.name);
+    if (field.dimension != Dimension::ratio) add(given.in_units, field.name);
   for (const SceneField& field : scene_fields)
     if (!is_in_both(field.name)) add(given.dimensionless, field.name);
   for (const std::string_view stop : {"until_time", "until_amplitude"}) add(given.dimensionless, stop);
   return given;
 }
 
-// The object of each damper of a list.
-std::vector<ObjectReader> damper_objects(ObjectReader& object) {
-  return object.optional_objects("dampers", most_dampers, 1);
-}
-
 // The field of a damper, which problems_of() names, where it stands in a file: one damper may be a list, too.
 Problem in_file(Problem problem, const ObjectReader& object) {
-  const auto* const field = std::ranges::find(scene_damper_fields, problem.field, &SceneField::name);
-  const auto* const in_units = std::ranges::find(unit_fields, problem.field, &UnitField::name);
-  const bool of_damper =
-      field != scene_damper_fields.end() || (in_units != unit_fields.end() && in_units->number.of_damper);
+  const auto is_it = [&](const auto& field) { return field.number.of_damper && field.name == problem.field; };
+  const bool of_damper = std::ranges::any_of(scene_fields, is_it) || std::ranges::any_of(unit_fields, is_it);
   if (of_damper && object.holds("dampers")) problem.field = damper_field(0, problem.field);
   return problem;
 }
@@ -52,33 +44,17 @@ Problem in_file(Problem problem, const ObjectReader& object) {
 SceneInUnits read_unit_fields(ObjectReader& object) {
   SceneInUnits scene;
   std::vector<std::string> unreadable;
-  const auto read = [&](ObjectReader& from, const UnitField& field, const std::string& name,
-                        std::optional<double>& target) {
+  const auto read = [&](ObjectReader& from, const UnitField& field, std::optional<double>& target,
+                        const std::string& name) {
+    if (!from.is_object()) unreadable.push_back(name);  // as has been reported
     if (!from.has(field.name)) return;
     // A field that cannot be read is neither missing nor usable.
     double value = std::numeric_limits<double>::quiet_NaN();
     if (!from.optional(field.name, value)) unreadable.push_back(name);
     target = value;
   };
-  const bool list = object.holds("dampers");
-  for (const UnitField& field : unit_fields) {
-    if (field.number.own || !list)
-      read(object, field, std::string(field.name), field.number.in(scene));
-    else if (object.has(field.name))
-      object.reject(field.name, beside_dampers);
-  }
-  std::vector<ObjectReader> dampers = damper_objects(object);
-  if (!dampers.empty()) scene.dampers.resize(dampers.size());
-  for (std::size_t i = 0; list && i < scene.dampers.size(); ++i) {
-    for (const UnitField& field : unit_fields) {
-      if (!field.number.of_damper) continue;
-      const std::string name = damper_field(i, field.name);
-      if (i < dampers.size() && dampers[i].is_object())
-        read(dampers[i], field, name, scene.dampers[i].*field.number.of_damper);
-      else
-        unreadable.push_back(name);  // as has been reported
-    }
-  }
+  read_numbers(object, scene, unit_fields, unit_fields, read);
+  if (scene.dampers.empty()) unreadable.emplace_back("dampers");
   for (const Problem& each : problems_of(scene)) {
     const Problem problem = in_file(each, object);
     if (std::ranges::find(unreadable, problem.field) == unreadable.end()) object.reject(problem);
@@ -106,26 +82,37 @@ void reject_run(const std::filesystem::path& file) {
       {{"", "this is a run, must be a scene; the scene of a run is the object \"scene\" in it"}});
 }
 
+// Writes the numbers that are there; those of the dampers in an array, unless one damper's are among the
+// scene's.
+template <class AnyScene, class Fields, class DamperFields>
+void write_numbers(JsonWriter& out, const AnyScene& scene, bool one, const Fields& fields,
+                   const DamperFields& damper_fields, JsonWriter::Layout layout) {
+  const auto write = [&](std::string_view name, const std::optional<double>& number) {
+    if (number) out.field(name, number);
+  };
+  for (const auto& each : fields)
+    if (one || each.number.own) write(each.name, each.number.in(scene));
+  if (one) return;
+  out.open_array("dampers", layout);
+  for (const auto& damper : scene.dampers) {
+    out.open_object(JsonWriter::Layout::one_line);
+    for (const auto& each : damper_fields)
+      if (each.number.of_damper) write(each.name, damper.*each.number.of_damper);
+    out.close();
+  }
+  out.close();
+}
+
 }  // namespace
 
 Scene read_scene_fields(ObjectReader& object, MissingFields missing) {
   Scene scene;
-  const bool list = object.has("dampers"), all = missing == MissingFields::are_problems;
-  const auto read = [&](ObjectReader& from, const SceneField& field, double& target) {
-    if (all) from.require(field.name);
-    from.optional(field.name, target);
-  };
-  for (const SceneField& field : scene_fields) {
-    if (field.number.own || !list)
-      read(object, field, field.number.in(scene));
-    else if (object.has(field.name))
-      object.reject(field.name, beside_dampers);
-  }
-  std::vector<ObjectReader> dampers = damper_objects(object);
-  if (list) scene.dampers.resize(dampers.size());
-  for (std::size_t i = 0; i < dampers.size(); ++i)
-    for (const SceneField& field : scene_damper_fields)
-      read(dampers[i], field, scene.dampers[i].*field.number.of_damper);
+  const bool all = missing == MissingFields::are_problems;
+  read_numbers(object, scene, scene_fields, scene_damper_fields,
+               [&](ObjectReader& from, const SceneField& field, double& target, const std::string&) {
+                 if (all) from.require(field.name);
+                 from.optional(field.name, target);
+               });
   for (const std::string_view stop : {"until_time", "until_amplitude"})
     if (all) object.require(stop);
   const bool time_is_read = object.optional("until_time", scene.until_time);
@@ -133,8 +120,7 @@ Scene read_scene_fields(ObjectReader& object, MissingFields missing) {
   for (const Problem& problem : problems_of(scene)) {
     // A stop that was given but could not be read is not missing as well.
     const bool given = problem.field == "until_time" && !(time_is_read && amplitude_is_read);
-    const bool no_dampers = list && dampers.empty();  // as has been reported
-    if (!given && !no_dampers) object.reject(in_file(problem, object));
+    if (!given && !scene.dampers.empty()) object.reject(in_file(problem, object));
   }
   return scene;
 }
@@ -179,17 +165,8 @@ Scene parse_scene(const std::string& name, const std::string& text) {
 }
 
 void write_scene_numbers(JsonWriter& out, const Scene& scene) {
-  const bool one = has_one_damper(scene);
-  for (const SceneField& each : scene_fields)
-    if (one || each.number.own) out.field(each.name, each.number.in(scene));
-  if (one) return;
-  out.open_array("dampers", JsonWriter::Layout::one_line);
-  for (const SceneDamper& damper : scene.dampers) {
-    out.open_object(JsonWriter::Layout::one_line);
-    for (const SceneField& each : scene_damper_fields) out.field(each.name, damper.*each.number.of_damper);
-    out.close();
-  }
-  out.close();
+  write_numbers(out, scene, has_one_damper(scene), scene_fields, scene_damper_fields,
+                JsonWriter::Layout::one_line);
 }
 
 void write_scene_fields(JsonWriter& out, const Scene& scene) {
@@ -199,21 +176,7 @@ void write_scene_fields(JsonWriter& out, const Scene& scene) {
 }
 
 void write_unit_fields(JsonWriter& out, const SceneInUnits& scene) {
-  const auto write = [&](const UnitField& field, const std::optional<double>& value) {
-    if (value) out.field(field.name, value);
-  };
-  const bool one = scene.dampers.size() == 1;
-  for (const UnitField& each : unit_fields)
-    if (one || each.number.own) write(each, each.number.in(scene));
-  if (one) return;
-  out.open_array("dampers", out.layout());
-  for (const DamperInUnits& damper : scene.dampers) {
-    out.open_object(JsonWriter::Layout::one_line);
-    for (const UnitField& each : unit_fields)
-      if (each.number.of_damper) write(each, damper.*each.number.of_damper);
-    out.close();
-  }
-  out.close();
+  write_numbers(out, scene, scene.dampers.size() == 1, unit_fields, unit_fields, out.layout());
 }
 
 std::string scene_text(const Scene& scene) {

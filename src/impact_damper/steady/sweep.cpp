@@ -19,8 +19,8 @@ void require_valid(const Scene& scene, const Engine& engine, const Axis& axis) {
   const std::vector<NamedSceneNumber> all = numbers_of(scene);
   if (std::ranges::find(all, axis.number, &NamedSceneNumber::number) == all.end())
     throw InvalidArguments(
-        {{axis.number.name(), has_one_damper(scene) ? "is for several dampers: the scene has no list"
-                                                    : "must be of one of the scene's several dampers"}});
+        {{name_of(axis.number), has_one_damper(scene) ? "is for several dampers: the scene has no list"
+                                                      : "must be of one of the scene's several dampers"}});
   for (std::int64_t i = 0; i < axis.count; ++i) require_none(problems_of(axis.at(scene, i), engine));
 }
 

@@ -23,33 +23,33 @@ struct OwnRecorder : Recorder {
   using Recorder::Recorder;
 };
 
-Outcome run(const Scene& scene, const Exact& options, OwnRecorder& recorder) {
-  return has_one_damper(scene) ? run_exact<double>(scene, options, recorder)
-                               : run_exact_dampers<double>(scene, options, recorder);
+Outcome observed(const Checked& run, const Exact&, OwnRecorder& recorder) {
+  return has_one_damper(run.scene()) ? run_exact<double>(run, recorder)
+                                     : run_exact_dampers<double>(run, recorder);
 }
-Outcome run(const Scene& scene, const Restitution& options, OwnRecorder& recorder) {
-  return has_one_damper(scene) ? run_restitution<double>(scene, options, recorder)
-                               : run_restitution_dampers<double>(scene, options, recorder);
+Outcome observed(const Checked& run, const Restitution&, OwnRecorder& recorder) {
+  return has_one_damper(run.scene()) ? run_restitution<double>(run, recorder)
+                                     : run_restitution_dampers<double>(run, recorder);
 }
-Outcome run(const Scene& scene, const Cem& options, OwnRecorder& recorder) {
-  return has_one_damper(scene) ? run_cem<double>(scene, options, recorder)
-                               : run_cem_dampers<double>(scene, options, recorder);
+Outcome observed(const Checked& run, const Cem&, OwnRecorder& recorder) {
+  return has_one_damper(run.scene()) ? run_cem<double>(run, recorder)
+                                     : run_cem_dampers<double>(run, recorder);
 }
 
 template <class Options>
-void write(const Scene& scene, Options options) {
-  options.budget = budget_for(scene, options.budget);
-  if constexpr (std::is_same_v<Options, Cem>) options = resolved(scene, options);
+void write(const Scene& scene, const Options& options) {
   Record record;
+  record.half_cycles = true;
   record.impacts = record.contacts = record.energy = true;
   record.history = {{0, 150, 301}};
+  const Checked checked_run = checked(scene, options, record);
   OwnRecorder recorder(record, scene.dampers.size());
-  const Outcome outcome = run(scene, options, recorder);
+  const Outcome outcome = observed(checked_run, options, recorder);
   Run result;
   result.stop_reason = outcome.stop_reason;
   result.end_time = outcome.end_time;
   result.scene = scene;
-  result.engine = options;
+  result.engine = checked_run.engine();
   recorder.finish(result);
   std::cout << run_text(result);
 }

@@ -1,0 +1,410 @@
+// `map`: draws one quantity of a sweep over two numbers of its grid.
+#include "application/sweeps/map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <tuple>
+
+#include "application/sweeps/sweep_table.hpp"
+#include "commands.hpp"
+#include "drawing.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/io/file_output.hpp"
+#include "output.hpp"
+
+namespace impact_damper::cli {
+namespace {
+
+// "secondary_mass" -> "secondary mass": gnuplot reads an underscore as the begin of an index.
+std::string in_words(std::string_view name) {
+  std::string words(name);
+  std::ranges::replace(words, '_', ' ');
+  return words;
+}
+// Replaces names of units by symbols: "1/Omega_n" -> "1/Ω_{n}", as gnuplot reads an index.
+std::string in_symbols(std::string text) {
+  for (const auto& [name, symbol] : {std::pair("Omega_n", "Ω_{n}"), {"epsilon", "ε"}})
+    for (std::size_t at; (at = text.find(name)) != std::string::npos;)
+      text.replace(at, std::string_view(name).size(), symbol);
+  return text;
+}
+
+struct Named {
+  const Plan& plan;
+  const MapQuestion& question;
+
+  const Variable& x() const { return plan.grid[question.x].variable; }
+  const Variable& y() const { return plan.grid[question.y].variable; }
+  const KeptQuantity& z() const { return plan.quantities[question.z]; }
+  std::string_view unit_z() const {
+    return unit_of(z().quantity->dimension, plan.scene.in_units.has_value());
+  }
+  std::string title_z() const {
+    std::string title = in_words(z().quantity->name);
+    if (z().at)
+      title +=
+          " " + with_unit(number_text(*z().at), unit_of(*z().quantity->at, plan.scene.in_units.has_value()));
+    return title;
+  }
+  static std::string labelled(const std::string& name, std::string_view unit) {
+    return unit.empty() ? name : name + ", in " + std::string(unit);
+  }
+};
+
+// Returns the index of the name that an option gives; absent, and noted, if it is none of them.
+std::optional<std::size_t> index_of(Arguments& arguments, const std::string& option, const std::string& name,
+                                    const std::vector<std::string_view>& names, const std::string& what) {
+  const auto found = std::ranges::find(names, name);
+  if (found != names.end()) return std::size_t(found - names.begin());
+  const auto meant = nearest(name, names);
+  arguments.reject(option, "must be " + what + ": " + listed(names, "or") + "; got " + in_quotes(name) +
+                               (meant ? ", did you mean " + std::string(*meant) + "?" : ""));
+  return std::nullopt;
+}
+
+std::optional<std::size_t> axis_of(Arguments& arguments, const std::string& option, const Plan& plan) {
+  const auto name = arguments.text(option);
+  if (!name) {
+    arguments.reject(option, "must be given: a number of the grid");
+    return std::nullopt;
+  }
+  std::vector<std::string_view> names;
+  for (const GridAxis& axis : plan.grid) names.push_back(axis.variable.name);
+  const auto index = index_of(arguments, option, *name, names, "a number of the table's grid");
+  if (index && plan.grid[*index].size() < 2)
+    arguments.reject(option, "must have at least two values, " + *name +
+                                 " has one: " + number_text(plan.grid[*index].value(0)));
+  return index;
+}
+
+std::optional<std::size_t> quantity_of(Arguments& arguments, const Plan& plan) {
+  auto name = arguments.text("--z");
+  if (!name) {
+    arguments.reject("--z", "must be given: a quantity of the table");
+    return std::nullopt;
+  }
+  std::vector<std::string> columns;
+  for (const KeptQuantity& each : plan.quantities) {
+    columns.push_back(each.column());
+    if (*name == each.text()) name = each.column();
+  }
+  return index_of(arguments, "--z", *name, {columns.begin(), columns.end()}, "a quantity of the table");
+}
+
+// Sets each number that is neither x nor y to the value that --where gives, or to its only one.
+void fix_the_others(Arguments& arguments, const Plan& plan, MapQuestion& question) {
+  std::vector<bool> is_given(plan.grid.size());
+  std::vector<std::string_view> names;
+  for (const GridAxis& axis : plan.grid) names.push_back(axis.variable.name);
+  for (const std::string& text : arguments.texts("--where")) {
+    const std::size_t equals = std::min(text.find('='), text.size());
+    const auto index =
+        index_of(arguments, "--where", text.substr(0, equals), names, "NAME=VALUE with a number of the grid");
+    if (!index) continue;
+    const GridAxis& axis = plan.grid[*index];
+    const std::string name(axis.variable.name);
+    if (is_given[*index]) arguments.reject("--where", "must give " + name + " once, got " + in_quotes(text));
+    is_given[*index] = true;
+    if (*index == question.x || *index == question.y) {
+      arguments.reject("--where", "must not fix " + name + ", which is an axis of the map");
+      continue;
+    }
+    std::vector<double> values;
+    for (std::int64_t i = 0; i < axis.size(); ++i) values.push_back(axis.value(i));
+    const double value =
+        parse_number(std::string_view(text).substr(std::min(equals + 1, text.size()))).value_or(std::nan(""));
+    // Accepts the value as it was written: 0.1, where a step of the grid has come to 0.09999999999999999.
+    const double rounding = 1e-12 * std::max(std::abs(values.front()), std::abs(values.back()));
+    const auto meant =
+        std::ranges::min_element(values, {}, [&](double known) { return std::abs(known - value); });
+    if (!(std::abs(*meant - value) <= rounding)) {
+      std::string known;
+      constexpr std::size_t most = 12;
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        if (values.size() > most && i == most - 1) known += ", ...";
+        if (values.size() > most && i >= most - 1 && i + 1 < values.size()) continue;
+        known += (i ? ", " : "") + number_text(values[i]);
+      }
+      std::string message = "must give ";
+      message.append(name).append(" one of its values: ").append(known).append("; got ");
+      arguments.reject("--where", message + in_quotes(text));
+      continue;
+    }
+    question.fixed[*index] = *meant;
+  }
+  for (std::size_t n = 0; n < plan.grid.size(); ++n) {
+    if (n == question.x || n == question.y || is_given[n]) continue;
+    if (plan.grid[n].size() == 1) {
+      question.fixed[n] = plan.grid[n].value(0);
+    } else {
+      const std::string name(plan.grid[n].variable.name);
+      std::string message = "must be given for ";
+      message.append(name).append(", which has ").append(std::to_string(plan.grid[n].size()));
+      message.append(" values: --where ").append(name).append("=");
+      arguments.reject("--where", message + number_text(plan.grid[n].value(0)));
+    }
+  }
+}
+
+MapQuestion question_of(Arguments& arguments, const Plan& plan) {
+  MapQuestion question;
+  question.fixed.resize(plan.grid.size());
+  const auto x = axis_of(arguments, "--x", plan), y = axis_of(arguments, "--y", plan);
+  const auto z = quantity_of(arguments, plan);
+  if (x && x == y)
+    arguments.reject(
+        "--y", "must be another number than --x, got both times " + in_quotes(plan.grid[*x].variable.name));
+  question.statistic = arguments.choice("--statistic", all_of<Statistic>, Statistic::median);
+  if (!x || !y || !z || x == y) return question;
+  question.x = *x, question.y = *y, question.z = *z;
+  question.better = plan.quantities[*z].quantity->better;
+  if (arguments.given("--best")) question.better = arguments.choice("--best", all_of<Better>, Better::least);
+  if (question.statistic == Statistic::worst && !question.better)
+    arguments.reject("--best",
+                     "must be given: which values of " + plan.quantities[*z].column() + " are the worst?");
+  fix_the_others(arguments, plan, question);
+  return question;
+}
+
+std::vector<std::optional<double>> values_of(const Map& map) {
+  std::vector<std::optional<double>> values;
+  for (const Cell& cell : map.cells)
+    values.push_back(cell.state == CellState::value ? std::optional(cell.value) : std::nullopt);
+  return values;
+}
+
+std::string point_text(const Named& named, const Map& map, std::size_t ix, std::size_t iy,
+                       const std::function<std::string(double)>& number) {
+  return std::string(named.x().name) + " = " + with_unit(number(map.x.values[ix]), named.x().unit) + ", " +
+         std::string(named.y().name) + " = " + with_unit(number(map.y.values[iy]), named.y().unit);
+}
+
+// Returns " (+12 %)": the margin (M15.6).
+std::string change_text(double from, double to) {
+  if (from == 0) return "";
+  const double percent = 100 * std::abs((to - from) / from);
+  return std::string(to < from ? " (−" : " (+") +
+         (percent < 99.5 ? rounded_text(percent, 2) : std::to_string(std::llround(percent))) + " %)";
+}
+
+std::string statistic_text(const MapQuestion& question, const Map& map) {
+  return map.draws == 1
+             ? ""
+             : std::string(name_of(question.statistic)) + " of " + std::to_string(map.draws) + " draws";
+}
+
+void add_block(Table& table, const std::string& name, std::vector<TableColumn> columns,
+               std::vector<std::size_t> gaps = {}) {
+  if (columns[0].values.empty()) return;
+  table.blocks.push_back({.name = name, .notes = {}, .columns = std::move(columns), .gaps = std::move(gaps)});
+}
+
+// Adds the cells of one state: their limits, and their values if they have any.
+void add_cells(Table& table, const std::string& name, const Map& map, CellState state) {
+  std::vector<TableColumn> columns{{"x", "of the point", {}},
+                                   {"y", "of the point", {}},
+                                   {"from x", "end of its cell", {}},
+                                   {"to x", "end of its cell", {}},
+                                   {"from y", "end of its cell", {}},
+                                   {"to y", "end of its cell", {}},
+                                   {"value", "statistic of its draws", {}}};
+  if (state != CellState::value) columns.pop_back();
+  const std::vector<double> x = map.x.edges(), y = map.y.edges();
+  for (std::size_t iy = 0; iy < map.y.values.size(); ++iy)
+    for (std::size_t ix = 0; ix < map.x.values.size(); ++ix) {
+      const Cell& cell = map.at(ix, iy);
+      if (cell.state != state) continue;
+      const std::array row{map.x.values[ix], map.y.values[iy], x[ix], x[ix + 1], y[iy],
+                           y[iy + 1],        cell.value};
+      for (std::size_t c = 0; c < columns.size(); ++c) columns[c].values.push_back(row[c]);
+    }
+  add_block(table, name, std::move(columns));
+}
+
+// Adds contours, with the number of the level on the piece of its contour nearest to the middle of the
+// picture.
+void add_contours(Table& table, const Map& map) {
+  const auto values = values_of(map);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  double least = infinity, greatest = -infinity;
+  for (const auto& value : values)
+    if (value) least = std::min(least, *value), greatest = std::max(greatest, *value);
+  const auto from_middle = [](const MapAxis& axis, double value) {
+    const double from = axis.place(axis.values.front()), to = axis.place(axis.values.back());
+    return std::abs((axis.place(value) - from) / (to - from) - 0.5);
+  };
+  MapLine all;
+  std::vector<TableColumn> labels{
+      {"x", "of the label", {}}, {"y", "of the label", {}}, {"level", "of the contour", {}}};
+  for (const double level : contour_levels(least, greatest)) {
+    const MapLine line = contour(map.x, map.y, values, level);
+    if (line.x.empty()) continue;
+    std::size_t nearest = 0;
+    double distance = INFINITY;
+    for (std::size_t i = 0; i < line.x.size(); ++i) {
+      const double away = std::max(from_middle(map.x, line.x[i]), from_middle(map.y, line.y[i]));
+      if (away < distance) distance = away, nearest = i;
+    }
+    labels[0].values.push_back(line.x[nearest]);
+    labels[1].values.push_back(line.y[nearest]);
+    labels[2].values.push_back(level);
+    if (!all.x.empty()) all.gaps.push_back(all.x.size());
+    for (const std::size_t gap : line.gaps) all.gaps.push_back(all.x.size() + gap);
+    all.x.insert(all.x.end(), line.x.begin(), line.x.end());
+    all.y.insert(all.y.end(), line.y.begin(), line.y.end());
+  }
+  add_block(table, "contours", {{"x", "along the contours", all.x}, {"y", "along the contours", all.y}},
+            all.gaps);
+  add_block(table, "levels", std::move(labels));
+}
+
+Drawing drawing_of(const Named& named, const Map& map) {
+  const Plan& plan = named.plan;
+  const MapQuestion& question = named.question;
+  Drawing drawing{"map", "map.gp", named.title_z(), {}};
+  Table& table = drawing.table;
+  std::string parameters = statistic_text(question, map);
+  for (std::size_t n = 0; n < plan.grid.size(); ++n)
+    if (n != question.x && n != question.y)
+      parameters += (parameters.empty() ? "" : "; ") + in_words(plan.grid[n].variable.name) + " = " +
+                    with_unit(number_text(question.fixed[n]), plan.grid[n].variable.unit);
+  if (map.best) {
+    const auto rounded = [](double value) { return rounded_text(value, 3); };
+    parameters += (parameters.empty() ? "" : "; ") + std::string("best ") +
+                  with_unit(rounded(map.best->value), named.unit_z()) + ", its worst neighbour " +
+                  (map.best->worst ? with_unit(rounded(*map.best->worst), named.unit_z()) +
+                                         change_text(map.best->value, *map.best->worst)
+                                   : "without a value");
+  }
+  table.header = {"Map: " + drawing.title, "Parameters: " + parameters,
+                  "x: " + Named::labelled(in_words(named.x().name), named.x().unit),
+                  "y: " + Named::labelled(in_words(named.y().name), named.y().unit),
+                  "z: " + Named::labelled(named.title_z(), named.unit_z())};
+  for (std::string& line : table.header) line = in_symbols(line);
+  drawing.title = in_symbols(drawing.title);
+  const auto is_logarithmic = [](const MapAxis& axis) {
+    return axis.spacing == Spacing::logarithmic ? 1.0 : 0.0;
+  };
+  table.blocks.push_back({.name = "logarithmic",
+                          .columns = {{"x", "1 if it is", {is_logarithmic(map.x)}},
+                                      {"y", "1 if it is", {is_logarithmic(map.y)}}}});
+  add_cells(table, "cells", map, CellState::value);
+  add_cells(table, "empty", map, CellState::empty);
+  add_cells(table, "failed", map, CellState::failed);
+  add_contours(table, map);
+  for (const auto& [limit, name, what] :
+       {std::tuple(Limit::impact_failure, "failure", "impacts fail "),
+        std::tuple(Limit::bounce_down_end, "bounce-down", "no bounce-down ")}) {
+    const auto found = limit_line(plan, question, map, limit);
+    if (!found) continue;
+    const std::string side(found->lower_side);
+    const std::string where = side == "left" || side == "right" ? "to the " + side + " of it" : side + " it";
+    add_block(table, name,
+              {{"x", "along the line", found->line.x}, {what + where, "along the line", found->line.y}},
+              found->line.gaps);
+  }
+  if (map.best)
+    add_block(table, "best",
+              {{"x", "of the best point", {map.x.values[map.best->x]}},
+               {"best", "of the best point", {map.y.values[map.best->y]}}});
+  return drawing;
+}
+
+// Returns remarks on the best point, a line each.
+std::string summary_of(const Named& named, const Map& map) {
+  const auto number = [](double value) { return number_text(value); };
+  const auto count = [&](CellState state) {
+    return std::to_string(std::ranges::count(map.cells, state, &Cell::state));
+  };
+  std::string text;
+  if (map.best) {
+    const BestPoint& best = *map.best;
+    const std::string statistic = statistic_text(named.question, map);
+    text += "best: " + named.z().column() + " = " + with_unit(number(best.value), named.unit_z()) + " at " +
+            point_text(named, map, best.x, best.y, number) + (statistic.empty() ? "" : ", " + statistic) +
+            "\n";
+    text +=
+        "margin: " +
+        (best.worst ? with_unit(number(*best.worst), named.unit_z()) + change_text(best.value, *best.worst)
+                    : std::string("no value")) +
+        " at its worst neighbour, " + point_text(named, map, best.worst_x, best.worst_y, number) + "\n";
+    if (best.x_is_at_end || best.y_is_at_end) {
+      text += "the best point is at the end of the grid in " +
+              (best.x_is_at_end ? std::string(named.x().name) : "") +
+              (best.x_is_at_end && best.y_is_at_end ? " and " : "") +
+              (best.y_is_at_end ? std::string(named.y().name) : "") + ": there may be better ones beyond\n";
+    }
+  }
+  text += "points: " + count(CellState::value) + " with a value, " + count(CellState::empty) + " empty, " +
+          count(CellState::failed) + " failed\n";
+  return text;
+}
+
+int make_map(Arguments& arguments) {
+  const auto file = arguments.file("TABLE"), output = arguments.file("--output");
+  if (!file) arguments.reject("TABLE", "must be given: a table that sweep or merge has written");
+  if (!output) arguments.reject("--output", "must be given: the picture is written there, as SVG");
+  reject_other_endings(arguments, "--output", output, {Format::svg});
+  if (file) arguments.reject_overwriting("--output", output, {*file, *file + ".json"});
+  arguments.finish();  // before the table is read, which decides what else is valid
+  const SweepDescription description = read_sweep_description(*file);
+  const MapQuestion question = question_of(arguments, description.plan);
+  arguments.finish();
+  prepare_output(output);
+  require_gnuplot();
+  MapMaker maker(description.plan, question);
+  read_sweep_rows(*file, description, [&](std::span<const std::string> row) { maker.add(row); });
+  const Map map = maker.finish();
+  const Named named{description.plan, question};
+  std::vector<double> values;
+  for (const Cell& cell : map.cells)
+    if (cell.state == CellState::value) values.push_back(cell.value);
+  const std::string column = named.z().column();
+  if (values.empty())
+    throw InputError(*file, {{"", "has no point with a value of " + column + ": there is nothing to draw"}});
+  if (const auto [least, greatest] = std::ranges::minmax(values); least == greatest)
+    throw InputError(*file, {{"", "has only one value of " + column + ", " + number_text(least) +
+                                      ": there is nothing to draw"}});
+  std::string svg;
+  {
+    DrawingBoard board;
+    svg = board.draw(drawing_of(named, map));
+  }
+  write_output(output, svg);
+  if (!is_standard_output(output)) write_standard_output(summary_of(named, map));
+  return 0;
+}
+
+}  // namespace
+
+Command map_command() {
+  Command command{
+      .name = "map",
+      .description =
+          "Draw a quantity of a sweep's table over two numbers of its grid, and tell the best point."};
+  command.options = {
+      input_option("TABLE", "FILE",
+                   "the table of a sweep, as CSV; FILE.json, which says what it holds, must be beside it"),
+      {"--x", "NAME", "the number of the grid along the horizontal axis"},
+      {"--y", "NAME", "the one along the vertical axis"},
+      {"--z", "NAME", "the quantity: its column, time_to_amplitude_6"},
+      {"--where", "NAME=VALUE", "of each other number of the grid, which of its values is drawn", "",
+       Option::Takes::repeated_value},
+      {"--statistic", "median|mean|worst", "what is drawn of several draws of one point; default median"},
+      {"--best", "least|greatest", "which values are best; default by the quantity, none of some"},
+      {"-o,--output", "FILE", "the picture, FILE.svg"}};
+  command.footer =
+      "A point of which a draw has no such quantity is marked as empty, one of which a draw did not end as\n"
+      "asked for as failed. The margin is the worst of the points one step of the grid away from the best.\n"
+      "Lines show where the amplitude is that of impact failure, or of the end of bounce-down. gnuplot must "
+      "be\n"
+      "there.\n\n"
+      "Example:\n"
+      "  impact-damper map map.csv --x clearance --y secondary_mass --z time_to_amplitude_6 -o map.svg";
+  command.act = make_map;
+  return command;
+}
+
+}  // namespace impact_damper::cli

@@ -1,0 +1,101 @@
+#include "output.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "application/sweeps/hdf5_table.hpp"
+#include "impact_damper/base/text.hpp"
+#include "impact_damper/io/file_output.hpp"
+#include "interruption.hpp"
+
+namespace impact_damper::cli {
+namespace {
+
+struct FormatInfo {
+  Format format;
+  std::string_view title;
+  std::vector<std::string_view> endings;
+};
+
+const FormatInfo& info_of(Format format) {
+  static const std::vector<FormatInfo> all{
+      {Format::json, "JSON", {".json"}},
+      {Format::csv, "CSV", {".csv"}},
+      {Format::gnuplot, "gnuplot", {".dat", ".txt"}},
+      {Format::html, "HTML", {".html", ".htm"}},
+      {Format::svg, "SVG", {".svg"}},
+      {Format::markdown, "Markdown", {".md", ".markdown"}},
+      {Format::hdf5, "HDF5", {hdf5_endings.begin(), hdf5_endings.end()}}};
+  return *std::ranges::find(all, format, &FormatInfo::format);
+}
+
+bool is_ending_of(const std::string& ending, Format format) {
+  return std::ranges::count(info_of(format).endings, std::string_view(ending)) > 0;
+}
+
+// Returns the ending in lower case, with its point; empty if there is none.
+std::string ending_of(const std::string& file) {
+  const std::string ending = in_lower_case(std::filesystem::path(file).extension().string());
+  constexpr std::size_t longest = sizeof ".markdown" - 1;
+  const bool is_one = ending.size() > 1 && ending.size() <= longest && ending[1] >= 'a' && ending[1] <= 'z';
+  return is_one ? ending : "";
+}
+
+}  // namespace
+
+void reject_other_endings(Arguments& arguments, const std::string& option,
+                          const std::optional<std::string>& output, std::initializer_list<Format> written) {
+  const std::string ending = output ? ending_of(*output) : "";
+  const auto is_its = [&](Format format) { return is_ending_of(ending, format); };
+  if (ending.empty() || std::ranges::any_of(written, is_its)) return;
+  std::string endings;
+  for (const Format format : written) {
+    const FormatInfo& info = info_of(format);
+    endings +=
+        (endings.empty() ? "" : ", or ") + listed(info.endings, "or") + " for " + std::string(info.title);
+  }
+  arguments.reject(option, "must end in " + endings + ", got " + in_quotes(*output));
+}
+
+Format format_of(Arguments& arguments, const std::optional<std::string>& output,
+                 std::initializer_list<Format> offered) {
+  const Format format = arguments.choice("--format", offered, *offered.begin());
+  std::error_code none;
+  if (!output || std::filesystem::is_directory(*output, none)) return format;
+  const auto* const other =
+      std::ranges::find_if(offered, [&](Format each) { return is_ending_of(ending_of(*output), each); });
+  if (other == offered.end() || *other == format) {
+    reject_other_endings(arguments, "--output", output, {format});
+  } else {
+    arguments.reject("--output", "ends as " + std::string(info_of(*other).title) + " does, which --format " +
+                                     std::string(name_of(*other)) + " writes, got " + in_quotes(*output));
+  }
+  return format;
+}
+
+void reject_same_output(Arguments& arguments, const std::string& option,
+                        const std::optional<std::string>& file, const std::string& other_option,
+                        const std::optional<std::string>& other) {
+  namespace fs = std::filesystem;
+  const auto place = [](const std::string& name) { return fs::weakly_canonical(fs::absolute(name)); };
+  if (file && other && place(*file) == place(*other))
+    arguments.reject(option, "must be another file than " + other_option + ", got " + in_quotes(*file));
+}
+
+bool is_standard_output(const std::optional<std::string>& output) { return output == "-"; }
+
+void prepare_output(const std::optional<std::string>& output) {
+  if (!output || is_standard_output(output)) return;
+  require_writable(*output);
+  if_interrupted_say(left_as_it_was(*output));
+}
+
+void write_output(const std::optional<std::string>& output, std::string_view text) {
+  if (output && !is_standard_output(output)) {
+    write_file(*output, text);
+  } else {
+    write_standard_output(text);
+  }
+}
+
+}  // namespace impact_damper::cli

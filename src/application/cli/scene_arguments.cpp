@@ -1,0 +1,314 @@
+#include "scene_arguments.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <iostream>
+#include <sstream>
+
+#include "impact_damper/analysis/cautions.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/engine_options.hpp"
+
+namespace impact_damper::cli {
+namespace {
+
+std::string option_of(std::string_view field) {
+  std::string name(field);
+  std::replace(name.begin(), name.end(), '_', '-');
+  return "--" + name;
+}
+
+std::string range_of(const SceneField& field) {
+  if (field.least < 0) return "0, or a number of a magnitude >= " + number_text(least_magnitude);
+  // Limits that only keep squares finite are not shown.
+  const double any = std::numeric_limits<double>::max();
+  return NumberRange{field.least, field.most >= 1e6 ? any : field.most}.describe("a number");
+}
+
+// An option of the command line, for all the engines that have it.
+struct OfferedOption {
+  OptionInfo info;
+  std::string type;  // of its value; "" for a flag
+  std::vector<std::string_view> engines;
+  std::vector<std::string> defaults;  // of each of them
+};
+
+template <class Value>
+std::string type_of(const OptionInfo& option) {
+  std::string type(option.symbol);
+  if constexpr (std::is_enum_v<Value>)
+    for (const std::string_view word : words_of<Value>())
+      type += (type.empty() ? "" : "|") + std::string(word);
+  return type;
+}
+
+std::vector<std::string_view> names_of(const std::vector<Engine>& engines) {
+  std::vector<std::string_view> names;
+  names.reserve(engines.size());
+  for (const Engine& engine : engines) names.push_back(name_of(engine));
+  return names;
+}
+
+// Returns the options of these engines, first those that only some of them have.
+std::vector<OfferedOption> offered_options(const std::vector<Engine>& engines) {
+  std::vector<OfferedOption> offered;
+  for (const Engine& engine : engines) {
+    for_each_option(engine, [&](const OptionInfo& option, const auto& value) {
+      const auto is_it = [&](const OfferedOption& each) { return each.info.name == option.name; };
+      auto found = std::ranges::find_if(offered, is_it);
+      if (found == offered.end()) {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        found = offered.insert(found, {option, type_of<Value>(option), {}, {}});
+      }
+      found->engines.push_back(name_of(engine));
+      found->defaults.push_back(option.otherwise.empty() ? option_text(value)
+                                                         : std::string(option.otherwise));
+    });
+  }
+  const auto of_some = [&](const OfferedOption& each) { return each.engines.size() < engines.size(); };
+  std::stable_partition(offered.begin(), offered.end(), of_some);
+  // Adds "stuck", which chooses a speed without a number: the only option that is no member of an engine.
+  const auto speed =
+      std::ranges::find_if(offered, [](const auto& each) { return each.info.name == "stuck_speed"; });
+  if (speed == offered.end()) return offered;
+  speed->defaults = {number_text(usual_stuck_speed)};
+  offered.insert(
+      speed, {{.name = "stuck",
+               .meaning = "a mass that sticks is in a sustained contact (contact), or both masses are one "
+                          "as in the paper, by equation (9) with the force divided by 1 + nu, until x'' "
+                          "changes its sign"},
+              "contact|paper",
+              speed->engines,
+              {"contact"}});
+  return offered;
+}
+
+// Rejects the options that the engine does not have, because it would ignore them.
+void reject_foreign_options(Arguments& arguments, const std::vector<Engine>& engines,
+                            std::string_view engine) {
+  for (const OfferedOption& offered : offered_options(engines)) {
+    const std::string option = option_of(offered.info.name);
+    if (arguments.given(option) && std::ranges::count(offered.engines, engine) == 0)
+      arguments.reject(option, "is an option of --engine " + listed(offered.engines, "or") +
+                                   ", got --engine " + std::string(engine));
+  }
+}
+
+template <class Value>
+void read_option(Arguments& arguments, const OptionInfo& info, Value& value) {
+  const std::string option = option_of(info.name);
+  if constexpr (std::is_enum_v<Value>) {
+    if (const auto index = arguments.word(option, words_of<Value>())) value = all_of<Value>.begin()[*index];
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    value = arguments.flag(option);
+  } else if constexpr (std::is_same_v<Value, std::int64_t>) {
+    value = arguments.whole_number(option, info.range).value_or(value);
+  } else {
+    if (const auto number = arguments.number(option, info.range)) value = *number;
+  }
+}
+
+void read_sticking(Arguments& arguments, Cem& cem) {
+  const bool as_in_paper = arguments.word("--stuck", {"contact", "paper"}) == std::size_t{1};
+  if (arguments.given("--stuck-speed") && !as_in_paper)
+    arguments.reject("--stuck-speed", "is an option of --stuck paper");
+  if (as_in_paper && !cem.stuck_speed) cem.stuck_speed = usual_stuck_speed;
+}
+
+// Returns `text` in lines of at most `most` characters.
+std::string in_lines(const std::string& text, std::size_t most) {
+  std::istringstream words(text);
+  std::string lines, line;
+  for (std::string word; words >> word;) {
+    if (!line.empty() && line.size() + 1 + word.size() > most) {
+      lines += line + '\n';
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + word;
+  }
+  return lines + line;
+}
+
+// Returns the help of an option: its meaning, what is allowed and the default.
+std::string help_of(const OfferedOption& offered, std::size_t engines) {
+  const OptionInfo& info = offered.info;
+  std::string text = offered.engines.size() < engines ? listed(offered.engines, "and") + ": " : "";
+  text += info.meaning;
+  if (offered.type.empty()) return text;
+  if (!info.symbol.empty())
+    text += "; " + info.range.describe(info.symbol == "N" ? "a whole number" : "a number");
+  if (!info.further.empty()) text += ", " + std::string(info.further);
+  text += (info.symbol.empty() ? "; default " : ", default ") + offered.defaults[0];
+  for (std::size_t i = 1; i < offered.engines.size(); ++i)
+    if (offered.defaults[i] != offered.defaults[0])
+      text += ", with " + std::string(offered.engines[i]) + " " + offered.defaults[i];
+  return text;
+}
+
+}  // namespace
+
+SceneFile scene_of(Arguments& arguments, Stops stops) {
+  const std::optional<std::string> name = arguments.file("--scene");
+  SceneFile file = name ? read_scene_file(*name) : SceneFile{};
+  Scene& scene = file.scene;
+  bool all_read = true;
+  const auto override_with = [&](std::string_view field, auto& target) {
+    const std::optional<double> value = arguments.number(option_of(field));
+    if (value) target = *value;
+    if (!value && arguments.given(option_of(field))) all_read = false;
+  };
+  for (const SceneField& field : scene_fields) {
+    override_with(field.name, field.number.in(scene));
+    if (field.number.of_damper && !has_one_damper(scene) && arguments.given(option_of(field.name)))
+      arguments.reject(option_of(field.name),
+                       "is for one damper: " + *name + " has a list, which sets their numbers");
+  }
+  if (stops == Stops::ignored) {
+    scene.until_time = 1;  // a scene needs one
+    scene.until_amplitude.reset();
+  } else {
+    override_with("until_time", scene.until_time);
+    override_with("until_amplitude", scene.until_amplitude);
+  }
+  if (!scene.until_time && !scene.until_amplitude) {
+    if (all_read)
+      arguments.reject("--until-time",
+                       "it, --until-amplitude or both must be given: when is the run to stop?");
+    return file;
+  }
+  for (const Problem& problem : problems_of(scene))
+    arguments.reject(option_of(problem.field), problem.message);
+  return file;
+}
+
+void require_one_damper(const Scene& scene, const std::string& scene_file) {
+  if (!has_one_damper(scene)) throw InputError(scene_file, {{"/dampers", problem_of_several().message}});
+}
+
+void reject_options_beside_units(Arguments& arguments, const SceneFile& scene, const std::string& instead) {
+  if (!scene.in_units) return;
+  const auto reject = [&](std::string_view field) {
+    const std::string option = option_of(field);
+    if (arguments.offers(option) && arguments.given(option))
+      arguments.reject(option,
+                       "is dimensionless, the scene is in units: its file" + instead + " sets its numbers");
+  };
+  for (const SceneField& field : scene_fields) reject(field.name);
+  reject("until_time");
+  reject("until_amplitude");
+}
+
+Engine engine_of(Arguments& arguments, const std::vector<Engine>& engines) {
+  const std::optional<std::size_t> chosen = arguments.word("--engine", names_of(engines));
+  if (!chosen && arguments.given("--engine")) return {};  // rejected; which options belong to it is unknown
+  Engine engine = engines[chosen.value_or(0)];
+  reject_foreign_options(arguments, engines, name_of(engine));
+  for_each_option(engine,
+                  [&](const OptionInfo& option, auto& value) { read_option(arguments, option, value); });
+  if (Cem* const cem = std::get_if<Cem>(&engine)) read_sticking(arguments, *cem);
+  return engine;
+}
+
+void warn_of_cautions(const std::string& command, const Scene& scene, const std::optional<Scales>& scales) {
+  for (const std::string& caution : cautions_of(scene, scales))
+    std::cerr << command << ": warning: " << caution << '\n';
+}
+
+void warn_of_early_end(const std::string& command, const Run& run, const std::optional<Scales>& scales) {
+  const auto warn = [&](const std::string& budget, const std::string& option) {
+    std::cerr << command + ": warning: the run ended early, at time " + rounded_text(run.end_time, 6) +
+                     (scales ? " (" + rounded_text(run.end_time * scales->of(Dimension::time), 6) + " s)"
+                             : "") +
+                     ": it had used up its " + budget + "; " + option + " raises that\n";
+  };
+  const Budget& budget =
+      std::visit([](const auto& engine) -> const Budget& { return engine.budget; }, run.engine);
+  switch (run.stop_reason) {
+    case StopReason::time:
+    case StopReason::amplitude:
+      return;
+    case StopReason::impact_budget:
+      return warn("budget of " + std::to_string(budget.max_impacts) + " impacts", "--max-impacts");
+    case StopReason::half_cycle_budget:
+      return warn("budget of " + std::to_string(budget.max_half_cycles) + " half cycles",
+                  "--max-half-cycles");
+    case StopReason::time_budget:
+      return warn("budget of time, " + rounded_text(*budget.max_time, 6), "--max-time");
+    case StopReason::step_budget:
+      break;
+  }
+  const std::int64_t steps = std::visit([](const auto& engine) { return engine.max_steps; }, run.engine);
+  warn("budget of " + std::to_string(steps) +
+           (std::holds_alternative<Cem>(run.engine)
+                ? " time steps"
+                : " steps of the searches for events and of the integrals of energy"),
+       "--max-steps");
+}
+
+void reject_as_options(std::vector<Problem> problems, const std::string& scene_file,
+                       const std::optional<Scales>& scales) {
+  for (Problem& problem : problems)
+    if (scales && problem.field.ends_with("y0"))
+      problem.message += " (secondary_displacement, divided by " + rounded_text(scales->length, 6) + " mm)";
+  const auto in_list = [](const Problem& problem) { return problem.field.starts_with("dampers"); };
+  if (std::ranges::any_of(problems, in_list)) {
+    std::erase_if(problems, std::not_fn(in_list));
+    for (Problem& problem : problems) problem.field = pointer_of(problem.field);
+    throw InputError(scene_file, problems);
+  }
+  for (Problem& problem : problems) problem.field = option_of(problem.field);
+  throw UsageError(std::move(problems));
+}
+
+Option threads_option() {
+  return {"--threads", "N",
+          "how many simulate at once; default one for each processor, same results with any"};
+}
+
+Option scenes_option() {
+  return input_option("--scenes", "FOLDER",
+                      "folder of the scenes that runs are named after; default data/scenes");
+}
+
+Options scene_options(Stops stops) {
+  Options options;
+  const auto add = [&](const std::string& name, const std::string& type, const std::string& help) {
+    options.push_back({name, type, help, "Scene"});
+  };
+  options.push_back(input_option(
+      "--scene", "FILE",
+      "read the scene from a JSON file, dimensionless or in kg, N/m and\nmm; the options below replace "
+      "its numbers and are always\ndimensionless"));
+  options.back().group = "Scene";
+  const Scene defaults;
+  for (const SceneField& field : scene_fields) {
+    add(option_of(field.name), "X",
+        std::string(field.meaning) + ";\n" + range_of(field) + ", default " +
+            number_text(field.number.in(defaults)));
+  }
+  if (stops == Stops::ignored) return options;
+  add("--until-time", "T", "stop at this time; a number > 0");
+  add("--until-amplitude", "A",
+      "stop at the end of the first half cycle below this amplitude;\n"
+      "a number > 0. One of the two stops, or both, must be given");
+  return options;
+}
+
+Options engine_options(const std::vector<Engine>& engines) {
+  Options options;
+  Option engine{"--engine", "", "", "Engine"};
+  for (const Engine& each : engines) {
+    const std::string name(name_of(each));
+    engine.help += (engine.type.empty() ? name + " (default)" : ";\n" + name) + ": ";
+    engine.help += std::visit([](const auto& chosen) { return chosen.meaning; }, each);
+    engine.type += (engine.type.empty() ? "" : "|") + name;
+  }
+  options.push_back(engine);
+  constexpr std::size_t width = 66;
+  for (const OfferedOption& each : offered_options(engines))
+    options.push_back({option_of(each.info.name), each.type, in_lines(help_of(each, engines.size()), width),
+                       "Engine", each.type.empty() ? Option::Takes::nothing : Option::Takes::value});
+  return options;
+}
+
+}  // namespace impact_damper::cli

@@ -1,0 +1,221 @@
+// `series`: makes the tables that the figures draw from the run files of a folder.
+#include "application/reproduction/series.hpp"
+
+#include <filesystem>
+
+#include "application/reproduction/catalogue.hpp"
+#include "application/reproduction/scene_runs.hpp"
+#include "application/sweeps/plan_file.hpp"
+#include "arguments.hpp"
+#include "commands.hpp"
+#include "impact_damper/base/errors.hpp"
+#include "impact_damper/io/file_output.hpp"
+#include "interruption.hpp"
+#include "output.hpp"
+#include "project_files.hpp"
+
+namespace impact_damper::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Returns the figures named, or all that have a table, in the order of the catalogue.
+std::vector<const Figure*> chosen(const Catalogue& catalogue, Arguments& arguments) {
+  std::vector<const Figure*> figures;
+  std::vector<std::string_view> numbers;
+  for (const Figure& figure : catalogue.figures) {
+    if (figure.table == TableKind::drawing) continue;
+    figures.push_back(&figure);
+    numbers.push_back(figure.number);
+  }
+  const std::vector<std::string> names = arguments.texts("--figure");
+  if (names.empty()) return figures;
+  figures.clear();
+  for (const std::string& name : names) {
+    const Figure* figure = find_figure(catalogue, name);
+    if (figure && figure->table != TableKind::drawing) {
+      figures.push_back(figure);
+    } else {
+      std::string known;
+      for (const std::string_view number : numbers)
+        known += (known.empty() ? "" : ", ") + std::string(number);
+      arguments.reject("--figure", "must be a figure with a table (" + known + "), got " + in_quotes(name));
+    }
+  }
+  return figures;
+}
+
+// Calls `read` and reports problems of a file under the figure's name.
+template <class Read>
+void for_figure(const Figure& figure, Read read) {
+  try {
+    read();
+  } catch (const InputError& error) {
+    std::vector<std::string> problems;
+    for (const std::string& problem : error.problems()) {
+      problems.push_back("figure " + figure.number + ": " + problem);
+    }
+    throw InputError(problems);
+  } catch (const IoError& error) {
+    throw IoError("figure " + figure.number + ": " + error.what());
+  }
+}
+
+// Loads the further runs that a figure draws, with their ensembles.
+void load_further(const Figure& figure, const SceneRuns& folders, const Catalogue& catalogue,
+                  const Threads& threads, FigureRuns& runs) {
+  for (const std::string& name : runs_of(figure))
+    for_figure(figure, [&] {
+      const fs::path file = folders.file_of(name);
+      FigureRun source{file, folders.read(*find_run(catalogue.runs, name))};
+      source.others = read_members(source.run, file, {.members = catalogue.members, .threads = threads});
+      runs[name] = std::move(source);
+    });
+}
+
+// Loads a figure's runs, and the members of the ensembles that it shows. All must be of one engine, whatever
+// figure they were read for.
+void load(const Figure& figure, const SceneRuns& folders, const Threads& threads, FigureRuns& runs) {
+  for (const std::string& scene : scenes_of(figure)) {
+    const fs::path file = folders.file_of(scene);
+    for_figure(figure, [&] {
+      if (!runs.contains(scene)) {
+        const FigureRun source{file, folders.read(scene)};
+        if (!runs.empty()) {
+          const FigureRun& first = runs.begin()->second;
+          require_same_engine(source.run, file, first.run, first.file);
+        }
+        runs[scene] = source;
+      }
+      FigureRun& source = runs.at(scene);
+      EnsembleOptions ensemble;
+      ensemble.members = members_shown(figure, scene);
+      ensemble.threads = threads;
+      if (ensemble.members > std::int64_t(source.others.size()) + 1)
+        source.others = read_members(source.run, file, ensemble);
+    });
+  }
+}
+
+// Loads a figure's responses.
+void load(const Figure& figure, const SceneRuns& folders, const Catalogue& catalogue,
+          FigureResponses& responses) {
+  for (const std::string& name : figure.responses)
+    for_figure(figure, [&] {
+      if (!responses.contains(name))
+        responses[name] = {folders.file_of(name), folders.read(*find_response(catalogue.responses, name))};
+    });
+}
+
+// Loads a figure's sweep, which must be of the plan beside the catalogue.
+void load(const Figure& figure, const SceneRuns& folders, const fs::path& catalogue_file,
+          FigureSweeps& sweeps) {
+  if (figure.plan.empty()) return;
+  for_figure(figure, [&] {
+    sweeps[figure.plan] =
+        read_sweep_table(folders.runs / (sweep_stem(figure) + ".csv"),
+                         read_plan(catalogue_file.parent_path() / figure.plan, find_named_file));
+  });
+}
+
+int make_tables(Arguments& arguments) {
+  const fs::path runs_folder = arguments.file("--runs").value_or("");
+  if (!arguments.given("--runs")) arguments.reject("--runs", "must be given: the folder of run files");
+  const SceneRuns folders{runs_folder, arguments.file("--scenes").value_or(project_file("data/scenes"))};
+  const auto output = arguments.file("--output");
+  const Format format = format_of(arguments, output, {Format::gnuplot, Format::csv});
+  const Threads threads = threads_of(arguments);
+  const std::string catalogue_file =
+      arguments.file("--catalogue").value_or(project_file("figures/catalogue.json"));
+  const Catalogue catalogue = read_catalogue(catalogue_file);
+  const std::vector<const Figure*> figures = chosen(catalogue, arguments);
+  const bool on_standard_output = !output || is_standard_output(output);
+  const bool into_folder = !on_standard_output && fs::is_directory(*output);
+  if (!into_folder && figures.size() != 1) {
+    arguments.reject("--output", "must be an existing folder if more than one table is made, got " +
+                                     (output ? in_quotes(*output) : "none"));
+  }
+  std::vector<fs::path> inputs{catalogue_file};
+  const auto add_run = [&](const std::string& name) {
+    const fs::path run = folders.file_of(name);
+    inputs.push_back(run);
+    for (std::int64_t member = 2; member <= most_members; ++member)
+      inputs.push_back(member_file(run, member));
+  };
+  for (const CatalogueScene& scene : catalogue.scenes) add_run(scene.name);
+  for (const CatalogueRun& run : catalogue.runs) add_run(run.name);
+  for (const CatalogueResponse& response : catalogue.responses)
+    inputs.push_back(folders.file_of(response.name));
+  for (const Figure* figure : figures) {
+    if (figure->plan.empty()) continue;
+    inputs.push_back(fs::path(catalogue_file).parent_path() / figure->plan);
+    inputs.push_back(runs_folder / (sweep_stem(*figure) + ".csv"));
+  }
+  arguments.reject_overwriting("--output", output, inputs);
+  arguments.finish();
+
+  const auto place_of = [&](const Figure& figure) {
+    return into_folder ? fs::path(*output) / (file_stem(figure) + (format == Format::csv ? ".csv" : ".dat"))
+                       : fs::path(*output);
+  };
+  if (!on_standard_output) {
+    for (const Figure* figure : figures) require_writable(place_of(*figure));
+  }
+
+  FigureRuns runs, further;
+  FigureResponses responses;
+  FigureSweeps sweeps;
+  std::size_t made = 0;
+  for (const Figure* figure : figures) {
+    if (!on_standard_output) {
+      if_interrupted_say(std::to_string(figures.size() - made++) + " of " + std::to_string(figures.size()) +
+                         " tables are left; " + left_as_it_was(place_of(*figure)));
+    }
+    load(*figure, folders, threads, runs);
+    load_further(*figure, folders, catalogue, threads, further);
+    load(*figure, folders, catalogue, responses);
+    load(*figure, folders, catalogue_file, sweeps);
+    const bool draws_further = !runs_of(*figure).empty();
+    const Table table = figure_table(*figure, draws_further ? further : runs, responses, sweeps);
+    const std::string text = format == Format::csv ? to_csv(table) : to_text(table);
+    write_output(on_standard_output ? output : place_of(*figure).string(), text);
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command series_command() {
+  Command command{.name = "series", .description = "Make from run files the tables that figures draw."};
+  command.options = {
+      input_option("--catalogue", "FILE", "which figure draws what; default figures/catalogue.json"),
+      input_option("--runs", "FOLDER",
+                   "folder of the runs, must be given: SCENE.json of each scene, with\n"
+                   "the members of the ensembles that figures show (run --members),\n"
+                   "NAME.json of each further run and response and NAME.csv of each\nsweep that they draw"),
+      scenes_option(),
+      {.name = "--figure",
+       .type = "NUMBER",
+       .help = "only the table of the catalogue's figure NUMBER; may be repeated;\ndefault all",
+       .takes = Option::Takes::repeated_value},
+      {"-o,--output", "PLACE", "file, or folder for figNN.dat or figNN.csv; default standard output"},
+      {"--format", "NAME", "gnuplot (default), what the figures are drawn from, or csv"},
+      {"--threads", "N", "how many read at once; default one for each processor, same tables\nwith any"}};
+  command.footer =
+      "Tables are text: a commented header with columns, scaling, scenes and script, then blocks of "
+      "numbers.\n"
+      "With --format csv the same numbers are tidy CSV (RFC 4180, lines end with LF) under\n"
+      "block,curve,x,y,low,high: a row for each x of each curve; low and high are the ends of an interval, "
+      "an\n"
+      "empty cell is no number, a row without numbers interrupts the line.\n"
+      "A run that is missing, too short, altered, of another scene or of another engine than the others is\n"
+      "rejected with the figure's and the file's name.\n\n"
+      "Examples:\n"
+      "  impact-damper series --runs build/runs/exact --figure 8\n"
+      "  impact-damper series --runs build/runs/exact -o build/series/exact\n"
+      "  impact-damper series --runs build/runs/exact --figure 8 --format csv -o fig08.csv";
+  command.act = make_tables;
+  return command;
+}
+
+}  // namespace impact_damper::cli

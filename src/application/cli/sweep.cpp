@@ -1,0 +1,389 @@
+// `sweep`: makes many runs of one scene with other numbers, and one table of what is kept of each; `merge`:
+// joins parts that were made separately into the same table.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+
+#include "application/sweeps/hdf5_table.hpp"
+#include "application/sweeps/plan_file.hpp"
+#include "application/sweeps/share_file.hpp"
+#include "commands.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/base/sha256.hpp"
+#include "impact_damper/io/file_output.hpp"
+#include "impact_damper/io/json_reader.hpp"
+#include "impact_damper/io/provenance.hpp"
+#include "interruption.hpp"
+#include "output.hpp"
+#include "progress.hpp"
+#include "project_files.hpp"
+#include "scene_arguments.hpp"
+#include "text_table.hpp"
+#include "vary.hpp"
+
+namespace impact_damper::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+// Reads FROM:TO:N, FROM:TO:N:log or V,V,...
+std::optional<GridAxis> axis_of(Arguments& arguments, const std::string& text,
+                                const std::vector<Variable>& variables) {
+  std::vector<std::string_view> names(variables.size());
+  std::ranges::transform(variables, names.begin(), &Variable::name);
+  const auto varied = varied_of(arguments, text, names);
+  if (!varied) return std::nullopt;
+  GridAxis axis;
+  axis.variable = variables[varied->index];
+  std::string values = varied->values.value_or("");
+  constexpr std::string_view logarithmic = ":log";
+  const bool is_range = values.find(':') != std::string::npos;
+  if (values.ends_with(logarithmic)) {
+    axis.spacing = Spacing::logarithmic;
+    values.resize(values.size() - logarithmic.size());
+  }
+  bool is_valid = true;
+  if (is_range) {
+    const auto range = parse_triple(values);
+    is_valid = range && range->first < range->second && range->count >= 2 &&
+               range->count <= most_axis_values &&
+               !(axis.spacing == Spacing::logarithmic && !(range->first > 0));
+    if (is_valid) axis.from = range->first, axis.to = range->second, axis.count = range->count;
+  } else {
+    for (std::size_t begin = 0; is_valid && begin <= values.size();) {
+      const std::size_t end = std::min(values.find(',', begin), values.size());
+      const auto value = parse_number(std::string_view(values).substr(begin, end - begin));
+      is_valid = value.has_value();
+      if (value) axis.values.push_back(*value);
+      begin = end + 1;
+    }
+  }
+  if (!is_valid) {
+    arguments.reject("--vary",
+                     "must be NAME=FROM:TO:N, NAME=FROM:TO:N:log or NAME=V,V,... with FROM < TO, for log "
+                     "both > 0, and N from 2 to " +
+                         std::to_string(most_axis_values) + ", got " + in_quotes(text));
+    return std::nullopt;
+  }
+  // The ends of a range, or all values of a list.
+  const std::vector<double> ends = axis.values.empty() ? std::vector{axis.from, axis.to} : axis.values;
+  for (const double value : ends) {
+    if (axis.variable.range.allows(value)) continue;
+    arguments.reject("--vary", "values of " + std::string(axis.variable.name) + " must be " +
+                                   axis.variable.range.describe("numbers") + ", got " + number_text(value));
+    break;
+  }
+  return axis;
+}
+
+void read_kept(Arguments& arguments, Plan& plan) {
+  const std::string list = arguments.text("--keep").value_or("");
+  if (!arguments.given("--keep")) {
+    arguments.reject("--keep", "must be given: which quantities, --list-quantities lists them");
+    return;
+  }
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const QuantityReading reading = read_quantity(std::string_view(list).substr(begin, end - begin));
+    if (reading.kept) {
+      plan.quantities.push_back(*reading.kept);
+    } else {
+      arguments.reject("--keep", reading.problem);
+    }
+    begin = end + 1;
+  }
+}
+
+// Returns the options for what a plan contains.
+Options options_of_plan() {
+  Options options{
+      {"--vary", "NAME=FROM:TO:N[:log]",
+       "without a plan: the number of the scene that takes N values, both ends\nincluded, equally spaced "
+       "or, with :log, by equal ratios; or\nNAME=V,V,... takes those listed. mass_ratio, restitution, ...; "
+       "beside a\nscene in units the names and units of its file; clearance_2 is that of\nthe second of "
+       "several dampers. Given several times: all combinations",
+       "Sweep", Option::Takes::repeated_value},
+      {"--keep", "LIST",
+       "without a plan: the quantities that are kept, with commas between;\n--list-quantities lists them",
+       "Sweep"}};
+  for (const Options& more : {scene_options(), engine_options()})
+    options.insert(options.end(), more.begin(), more.end());
+  return options;
+}
+
+// "-o,--output" -> "--output".
+std::string long_name(const std::string& name) { return name.substr(name.rfind(',') + 1); }
+
+Plan plan_of_options(Arguments& arguments) {
+  Plan plan;
+  plan.scene = scene_of(arguments, Stops::needed);
+  plan.engine = engine_of(arguments);
+  reject_options_beside_units(arguments, plan.scene, ", or --vary,");
+  for (const std::string& text : arguments.texts("--vary"))
+    if (auto axis = axis_of(arguments, text, variables_of(plan.scene))) plan.grid.push_back(std::move(*axis));
+  if (!arguments.given("--vary")) arguments.reject("--vary", "it or a plan must be given: what is to vary?");
+  read_kept(arguments, plan);
+  arguments.finish();
+  for (const Problem& problem : problems_of(plan)) {
+    const std::string option = problem.field == "grid"     ? "--vary"
+                               : problem.field == "engine" ? "--engine"
+                                                           : "--keep";
+    arguments.reject(
+        option, problem.field == "frequencies" ? "the worst over frequencies needs a plan" : problem.message);
+  }
+  return plan;
+}
+
+Plan plan_of(Arguments& arguments) {
+  const auto file = arguments.file("PLAN");
+  if (!file) return plan_of_options(arguments);
+  for (const Option& option : options_of_plan())
+    if (const std::string name = long_name(option.name); arguments.given(name))
+      arguments.reject(name, "cannot be given beside a plan, which says it");
+  arguments.finish();
+  return read_plan(*file, find_named_file);
+}
+
+struct Part {
+  std::int64_t part = 1, parts = 1;
+};
+Part part_of(Arguments& arguments) {
+  const auto text = arguments.text("--part");
+  if (!text) return {};
+  const std::size_t slash = text->find('/');
+  const auto part = parse_integer(text->substr(0, slash)),
+             parts = slash == std::string::npos ? std::nullopt : parse_integer(text->substr(slash + 1));
+  if (part && parts && *part >= 1 && *part <= *parts && *parts <= most_parts) return {*part, *parts};
+  arguments.reject("--part", "must be K/N with 1 <= K <= N <= " + std::to_string(most_parts) + ", got " +
+                                 in_quotes(*text));
+  return {};
+}
+
+// Returns version and commit; if the commit does not identify the source, the program's own digest as well.
+std::string program_identity() {
+  const Provenance& made = provenance();
+  std::string identity = std::string(made.version) + ' ' + std::string(made.commit);
+  if (made.tree.empty()) {
+    const std::string digest = sha256(read_text("/proc/self/exe"));
+    constexpr std::size_t some = 16;
+    identity += ' ' + digest.substr(0, some);
+  }
+  return identity;
+}
+
+void require_known_format(Arguments& arguments, const std::optional<std::string>& output) {
+  reject_other_endings(arguments, "--output", output, {Format::csv, Format::hdf5});
+  if (is_standard_output(output))
+    arguments.reject("--output", "must be a file, beside which a description of it is written, got \"-\"");
+  if (output && is_hdf5(*output) && !has_hdf5())
+    arguments.reject(
+        "--output",
+        "asks for HDF5, but the program was built without the HDF5 library (Debian: libhdf5-dev); "
+        "named *.csv the table is CSV");
+}
+
+// Returns a duration for reading: "42 s", "17 min", "3.5 h".
+std::string duration_text(double seconds) {
+  constexpr double minute = 60, hour = 3600;
+  if (seconds < 2 * minute) return rounded_text(seconds, 2) + " s";
+  if (seconds < 2 * hour) return rounded_text(seconds / minute, 2) + " min";
+  return rounded_text(seconds / hour, 3) + " h";
+}
+
+std::string bytes_text(double bytes) {
+  constexpr double kilo = 1e3, mega = 1e6, giga = 1e9;
+  if (bytes < mega) return rounded_text(bytes / kilo, 2) + " kB";
+  return bytes < giga ? rounded_text(bytes / mega, 2) + " MB" : rounded_text(bytes / giga, 3) + " GB";
+}
+
+// Makes a few of the runs and reports how long all take.
+void tell_size(const Plan& plan, const RowRange& range, const Threads& threads) {
+  constexpr std::int64_t most_tried = 16;
+  constexpr double long_enough = 2;  // seconds
+  const std::int64_t tried = std::min(most_tried, range.size());
+  const auto begin = Clock::now();
+  std::int64_t made = 0;
+  double bytes = 0;
+  for (; made < tried && seconds_since(begin) < long_enough; ++made) {
+    // Runs from the whole range, however few are made: fractional parts of multiples of the golden ratio.
+    constexpr double golden = 0.6180339887498949;
+    const double part = (double(made) + 0.5) * golden;
+    const std::int64_t i =
+        range.begin +
+        (range.size() <= most_tried ? made : std::int64_t(double(range.size()) * (part - std::floor(part))));
+    bytes += double(row_of(plan, i).size() + 1);
+  }
+  const double each = made == 0 ? 0 : seconds_since(begin) / double(made), runs = double(range.size());
+  const std::int64_t at_once =
+      std::min<std::int64_t>(number_of(threads), std::max<std::int64_t>(1, range.size()));
+  write_standard_output(std::to_string(range.size()) + " runs of " + std::to_string(runs_of(plan)) +
+                        ", about " + duration_text(each * runs / double(at_once)) + " with " +
+                        std::to_string(at_once) + (at_once == 1 ? " thread" : " threads") +
+                        ", a table of about " + bytes_text(made == 0 ? 0 : bytes / double(made) * runs) +
+                        ", judged by " + std::to_string(made) + " of the runs\n");
+}
+
+// Makes the missing rows of a share.
+void make_share(ShareWriter& share, const ShareHead& head, const fs::path& file, const Threads& threads) {
+  const RowRange range = rows_of_part(head.plan, head.part, head.parts);
+  const auto say_what_is_kept = [&] {
+    if_interrupted_say(std::to_string(share.kept()) + " of " + std::to_string(range.size()) +
+                       " runs are kept in " + file.string() + "; the same command goes on from there");
+  };
+  say_what_is_kept();
+  const std::int64_t before = share.rows();
+  ProgressOnStderr progress("sweep");
+  const auto begin = Clock::now();
+  double told = 0;
+  for_each_in_order(
+      range.size() - before, threads,
+      [&](std::int64_t i) { return row_of(head.plan, range.begin + before + i); },
+      [&](const std::string& row) {
+        share.append(row);
+        const double seconds = seconds_since(begin);
+        if (seconds - told < 0.5) return;
+        told = seconds;
+        const double rate = double(share.rows() - before) / seconds;
+        progress(std::to_string(share.rows()) + " of " + std::to_string(range.size()) + " runs, " +
+                 rounded_text(rate, 3) + " in a second, " +
+                 duration_text(double(range.size() - share.rows()) / rate) + " left");
+        say_what_is_kept();
+      });
+  share.finish();
+}
+
+std::string list_of_quantities() {
+  std::vector<std::vector<std::string>> rows{{"quantity", "unit", "in units", "what"}};
+  for (const Quantity& each : all_quantities()) {
+    const auto unit = [&](bool in_units) {
+      const std::string text(unit_of(each.dimension, in_units));
+      return text.empty() ? std::string("-") : text;
+    };
+    const std::string at = !each.at ? "" : *each.at == Dimension::length ? "=A" : "=L";
+    rows.push_back({std::string(each.name) + at, unit(false), unit(true), std::string(each.meaning)});
+  }
+  return aligned(rows);
+}
+
+int make_sweep(Arguments& arguments) {
+  if (arguments.flag("--list-quantities")) {
+    arguments.finish();
+    write_standard_output(list_of_quantities());
+    return 0;
+  }
+  ShareHead head;
+  const Part part = part_of(arguments);
+  const Threads threads = threads_of(arguments);
+  const bool dry_run = arguments.flag("--dry-run");
+  const auto output = arguments.file("--output");
+  if (!output && !dry_run) arguments.reject("--output", "must be given: the table is written there");
+  head.plan = plan_of(arguments);
+  head.part = part.part;
+  head.parts = part.parts;
+  require_known_format(arguments, output);
+  const std::string description = output.value_or("") + ".json";
+  const std::vector<fs::path> inputs{arguments.text("PLAN").value_or(""),
+                                     arguments.text("--scene").value_or("")};
+  arguments.reject_overwriting("--output", output, inputs);
+  if (output) arguments.reject_overwriting("--output", description, inputs);
+  arguments.finish();
+  if (dry_run) {
+    tell_size(head.plan, rows_of_part(head.plan, head.part, head.parts), threads);
+    return 0;
+  }
+  require_writable(*output);
+  require_writable(description);
+  head.program = program_identity();
+  const fs::path file = share_file(*output, head.part, head.parts);
+  {
+    ShareWriter share(file, head);
+    make_share(share, head, file, threads);
+  }
+  if (arguments.given("--part")) return 0;
+  join_shares({file}, *output);
+  std::error_code kept;
+  fs::remove(file, kept);
+  return 0;
+}
+
+int merge(Arguments& arguments) {
+  const auto output = arguments.file("--output");
+  std::vector<fs::path> files;
+  if (const auto first = arguments.file("PART")) files.emplace_back(*first);
+  for (const std::string& more : arguments.more()) {
+    if (more.starts_with('-')) throw UsageError({Problem{"", "unknown argument " + in_quotes(more)}});
+    files.emplace_back(more);
+  }
+  if (files.empty()) arguments.reject("PART", "must be given: the files that sweep --part has written");
+  if (!output) arguments.reject("--output", "must be given: the table is written there");
+  arguments.reject_overwriting("--output", output, files);
+  require_known_format(arguments, output);
+  arguments.finish();
+  if_interrupted_say(left_as_it_was(*output));
+  join_shares(files, *output);
+  return 0;
+}
+
+}  // namespace
+
+Command sweep_command() {
+  Command command{.name = "sweep",
+                  .description =
+                      "Simulate a scene with many other numbers, and keep what is asked for of each run as "
+                      "one table."};
+  command.options = {
+      input_option("PLAN", "FILE", "a JSON file that says what varies and what is kept (docs/sweeps.md)"),
+      {"--list-quantities", "", "print what can be kept, with its units, and exit", "Sweep",
+       Option::Takes::nothing},
+      {"--dry-run", "",
+       "only print how many runs there are, about how long they take and how\nlarge the table is", "Sweep",
+       Option::Takes::nothing},
+      {"--part", "K/N", "make only part K of N, in the file OUTPUT.part-K-of-N; merge joins the\nparts",
+       "Sweep"},
+      {"-o,--output", "FILE",
+       "the table, CSV or, named *.h5, HDF5; beside it FILE.json says what it\nholds. Interrupted, the same "
+       "command goes on",
+       "Sweep"},
+      threads_option()};
+  command.options.back().group = "Sweep";
+  for (const Option& option : options_of_plan()) command.options.push_back(option);
+  command.footer =
+      "Each run has a row: its number, the numbers that vary, the quantities, \"end\" and \"problem\". A run "
+      "that\n"
+      "fails has the reason there, and the sweep goes on. The table has the same bytes with any number of "
+      "threads\n"
+      "or parts, interrupted or not. Lengths given and kept are in units of the clearance, beside a scene in "
+      "units\n"
+      "in mm; --list-quantities has the other units.\n\n"
+      "Examples:\n"
+      "  impact-damper sweep --until-amplitude 0.03 --vary mass_ratio=0.005:0.08:40:log \\\n"
+      "    --vary restitution=0.4,0.6,0.8 --keep time_to_amplitude=0.6,impacts -o map.csv\n"
+      "  impact-damper sweep plan.json --part 3/8 -o map.csv";
+  command.act = make_sweep;
+  return command;
+}
+
+Command merge_command() {
+  Command command{
+      .name = "merge",
+      .description = "Join the parts that sweep --part has made into the table that one sweep makes."};
+  command.options = {input_option("PART", "FILE", "the parts, in any order"),
+                     {"-o,--output", "FILE",
+                      "the table, CSV or, named *.h5, HDF5; beside it FILE.json says what it\nholds"}};
+  command.takes_more = true;
+  command.footer =
+      "Parts must be of one plan and one version of the program, whole, and none missing or doubled.\n\n"
+      "Example:\n"
+      "  impact-damper merge map.csv.part-* -o map.csv";
+  command.act = merge;
+  return command;
+}
+
+}  // namespace impact_damper::cli

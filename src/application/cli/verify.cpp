@@ -1,0 +1,412 @@
+// `verify`: checks the claims, one by one, against the runs.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "application/reproduction/catalogue.hpp"
+#include "application/reproduction/claims.hpp"
+#include "application/reproduction/measures.hpp"
+#include "application/reproduction/power.hpp"
+#include "application/reproduction/scene_runs.hpp"
+#include "application/reproduction/words.hpp"
+#include "arguments.hpp"
+#include "commands.hpp"
+#include "impact_damper/base/errors.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/io/file_output.hpp"
+#include "impact_damper/io/json_writer.hpp"
+#include "interruption.hpp"
+#include "output.hpp"
+#include "power_table.hpp"
+#include "project_files.hpp"
+
+namespace impact_damper::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Verified {
+  const Claim* claim;
+  Spread ours;
+  NamedSpreads also{};  // the further numbers that the templates show
+  std::string words{};  // our result in the statement's terms
+  Verdict verdict = Verdict::not_reproduced;
+  Verdict recorded = Verdict::reproduced;
+  bool as_recorded() const { return verdict == recorded; }
+  // Returns one of the claim's templates, filled with what was measured.
+  std::string filled(const std::string& text) const {
+    NamedSpreads spreads = also;
+    spreads[""] = ours;
+    return in_words(text, spreads);
+  }
+};
+
+std::string allowed_text(const Claim& claim) { return allowed_in_words(claim.words, claim.allowed); }
+
+// The texts in the columns of an open statement.
+constexpr const char *not_measured = "not measured", *open_word = "open";
+
+// Returns the number of characters, not bytes: claims are written in UTF-8.
+std::size_t width(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
+std::string table_text(const std::vector<Verified>& all, const std::vector<OpenStatement>& open) {
+  std::vector<std::vector<std::string>> rows{
+      {"claim", "paper", "allowed", "ours (median, extremes of the ensemble)", "verdict"}};
+  for (const Verified& each : all)
+    rows.push_back({each.claim->id, each.claim->printed, allowed_text(*each.claim), each.words,
+                    std::string(name_of(each.verdict)) +
+                        (each.as_recorded() ? "" : " <-- recorded: " + std::string(name_of(each.recorded)))});
+  for (const OpenStatement& each : open)
+    rows.push_back({each.id, each.printed, not_measured, not_measured, open_word});
+  std::vector<std::size_t> widths(rows.front().size());
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width(row[i]));
+  std::string text;
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      text += row[i];
+      if (i + 1 < row.size()) text.append(widths[i] - width(row[i]) + 2, ' ');
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string open_text(const std::vector<OpenStatement>& open) {
+  if (open.empty()) return "";
+  return "; besides, " + std::to_string(open.size()) +
+         (open.size() == 1 ? " statement of the paper is open" : " statements of the paper are open");
+}
+
+std::string summary_text(const std::vector<Verified>& all, const std::vector<OpenStatement>& open) {
+  const auto of_source = [&](Source source, std::string_view what, std::initializer_list<Verdict> verdicts) {
+    const auto count = [&](auto is_counted) {
+      return std::to_string(std::ranges::count_if(all, is_counted));
+    };
+    const auto is_of_it = [&](const Verified& each) { return each.claim->source == source; };
+    if (source != Source::paper && std::ranges::none_of(all, is_of_it)) return std::string();
+    std::string text = count(is_of_it) + std::string(what);
+    for (const Verdict verdict : verdicts)
+      text += (verdict == *verdicts.begin() ? ": " : ", ") +
+              count([&](const Verified& each) { return is_of_it(each) && each.verdict == verdict; }) + " " +
+              std::string(verdict == Verdict::holds           ? "hold"
+                          : verdict == Verdict::does_not_hold ? "do not hold"
+                                                              : name_of(verdict));
+    return text + "; ";
+  };
+  const auto changed = std::ranges::count_if(all, [](const Verified& each) { return !each.as_recorded(); });
+  return of_source(Source::paper, " claims of the paper",
+                   {Verdict::reproduced, Verdict::not_reproduced, Verdict::corrected, Verdict::derived}) +
+         of_source(Source::quoted, " of studies that it quotes",
+                   {Verdict::reproduced, Verdict::not_reproduced}) +
+         of_source(Source::ours, " of ours", {Verdict::holds, Verdict::does_not_hold}) +
+         (changed == 0 ? "all as recorded" : std::to_string(changed) + " not as recorded") + open_text(open) +
+         "\n";
+}
+
+std::string cell(std::string text) {  // of a Markdown table
+  for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, 1, '\\');
+  return text;
+}
+
+std::string markdown_text(const std::vector<Verified>& all, const std::vector<OpenStatement>& open,
+                          const std::string& engine) {
+  std::string text =
+      "| id | section | claim | paper | ours | allowed | because | verdict "
+      "|\n|---|---|---|---|---|---|---|---|\n";
+  for (const Verified& each : all) {
+    const Claim& claim = *each.claim;
+    text += "| " + claim.id + " | " + cell(claim.section) + " | " + cell(claim.statement) + " | " +
+            cell(claim.printed) + " | " + cell(each.words) + " | " + allowed_text(claim) + " | " +
+            cell(claim.allowed.reason) + " | " + std::string(name_of(each.verdict)) + " |\n";
+  }
+  for (const OpenStatement& each : open)
+    text += "| " + each.id + " | " + cell(each.section) + " | " + cell(each.statement) + " | " +
+            cell(each.printed) + " | " + not_measured + " | " + not_measured + " | " +
+            cell(each.explanation) + " | " + open_word + " |\n";
+  text += "\n" + summary_text(all, open);
+  for (const Verified& each : all) {
+    const auto otherwise = each.claim->with_engine.find(engine);
+    if (otherwise != each.claim->with_engine.end())
+      text += "\n**" + each.claim->id + "** (" + engine + ", " + std::string(name_of(each.verdict)) + "). " +
+              each.filled(otherwise->second.explanation) + "\n";
+    if (each.claim->explanation.empty()) continue;
+    text += "\n**" + each.claim->id + "** (" + std::string(name_of(each.verdict)) + "). " +
+            each.filled(each.claim->explanation) +
+            (each.claim->evidence.empty() ? "" : " Evidence: " + each.filled(each.claim->evidence)) + "\n";
+  }
+  return text;
+}
+
+// Writes a number that is not finite as null.
+void write(JsonWriter& out, const Spread& spread) {
+  const auto number = [](double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; };
+  out.fields("ours", number(spread.median), "low", number(spread.low), "high", number(spread.high));
+}
+
+std::string verdicts_text(const std::vector<Verified>& all, const std::vector<OpenStatement>& open) {
+  using Layout = JsonWriter::Layout;
+  JsonWriter out("table");
+  out.open_object(Layout::one_line);
+  out.field("schema", "impact-damper/verdicts/1");
+  out.new_line();
+  out.open_array("verdicts", Layout::lines);
+  for (const Verified& each : all) {
+    out.open_object(Layout::one_line);
+    out.field("claim", each.claim->id);
+    write(out, each.ours);
+    if (!each.also.empty()) out.open_object("also", Layout::one_line);
+    for (const auto& [name, spread] : each.also) {
+      out.open_object(name, Layout::one_line);
+      write(out, spread);
+      out.close();
+    }
+    if (!each.also.empty()) out.close();
+    out.fields("words", each.words, "verdict", name_of(each.verdict), "recorded", name_of(each.recorded));
+    out.close();
+  }
+  out.close();
+  if (!open.empty()) {
+    std::vector<std::string> ids;
+    ids.reserve(open.size());
+    for (const OpenStatement& each : open) ids.push_back(each.id);
+    out.new_line();
+    out.field("open", ids);
+  }
+  out.close();
+  return out.finish() + '\n';
+}
+
+// The names of what claims rest on: runs of scenes, further runs, whose scenes' runs are among them if they
+// are the catalogue's, and responses.
+struct RunNames {
+  std::set<std::string> scenes, further, responses;
+};
+RunNames runs_of(const std::vector<Claim>& claims, const Catalogue& catalogue) {
+  RunNames names;
+  const auto add = [&](const MeasureCall& call) {
+    for (const std::string& name : call.scenes) {
+      const CatalogueRun* const run = find_run(catalogue.runs, name);
+      if (run) names.further.insert(name);
+      if (!run || find_scene(catalogue, run->scene)) names.scenes.insert(run ? run->scene : name);
+    }
+    names.responses.insert(call.responses.begin(), call.responses.end());
+  };
+  for (const Claim& claim : claims) {
+    add(claim.measure);
+    for (const auto& [name, call] : claim.also) add(call);
+  }
+  return names;
+}
+
+// Rejects figures that rest on a claim that does not exist.
+void check_figures(const std::vector<Figure>& figures, const fs::path& file,
+                   const std::vector<Claim>& claims) {
+  std::set<std::string> ids;
+  for (const Claim& claim : claims) ids.insert(claim.id);
+  std::vector<Problem> problems;
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    const std::vector<std::string>& rests_on = figures[i].claims;
+    for (std::size_t j = 0; j < rests_on.size(); ++j) {
+      if (ids.contains(rests_on[j])) continue;
+      problems.push_back({"/figures/" + std::to_string(i) + "/claims/" + std::to_string(j),
+                          "must be the id of a claim, got the string " + in_quotes(rests_on[j])});
+    }
+  }
+  if (!problems.empty()) throw InputError(file.string(), problems);
+}
+
+// Checks every run and response that a claim rests on, before anything is measured: consistent, of its scene,
+// and the runs of scenes all of one engine. Returns the responses.
+std::map<std::string, Response> checked(const SceneRuns& folders, const RunNames& names,
+                                        const Catalogue& catalogue) {
+  std::optional<Run> first;
+  for (const std::string& scene : names.scenes) {
+    Run run = folders.read(scene);
+    if (first)
+      require_same_engine(run, folders.file_of(scene), *first, folders.file_of(*names.scenes.begin()));
+    if (!first) first = std::move(run);
+  }
+  for (const std::string& name : names.further) folders.read(*find_run(catalogue.runs, name));
+  std::map<std::string, Response> responses;
+  for (const std::string& name : names.responses) {
+    const CatalogueResponse* const asked = find_response(catalogue.responses, name);
+    if (!asked)
+      throw InvalidArguments({{"--claims", "must name responses of the catalogue, got " + in_quotes(name)}});
+    responses[name] = folders.read(*asked);
+  }
+  return responses;
+}
+
+// Finds, instead of the verdicts, which changes of a number turn one.
+int find_power(const SceneRuns& folders, std::vector<Claim> claims, const std::set<std::string>& scenes,
+               const Catalogue& catalogue, std::map<std::string, Response> responses,
+               const EnsembleOptions& ensemble, const std::optional<std::string>& json_file,
+               const std::optional<std::string>& markdown_file) {
+  PowerInput input{.claims = claims_on_scenes_of(catalogue, std::move(claims)),
+                   .runs = {},
+                   .further = catalogue.runs,
+                   .asked = catalogue.responses,
+                   .responses = std::move(responses),
+                   .ensemble = ensemble,
+                   .left_out = {}};
+  for (const std::string& scene : scenes) input.runs[scene] = folders.read(scene);
+  PowerTable table;
+  if (!input.runs.empty()) table.engine = name_of(input.runs.begin()->second.engine);
+  table.members = ensemble.members;
+  table.claims = input.claims.size();
+  table.ensembles = 20;
+  table.unsettled = input.left_out = unsettled_claims(input, table.ensembles);
+  const Power power(std::move(input));
+  if_interrupted_say("no table is made" + (json_file ? "; " + left_as_it_was(*json_file) : ""));
+  std::mutex telling;
+  auto told = std::chrono::steady_clock::now();
+  table.rows = power.table([&](std::size_t done, std::size_t searches) {
+    const std::lock_guard lock(telling);
+    const auto now = std::chrono::steady_clock::now();
+    if (now - told < std::chrono::seconds(2)) return;
+    told = now;
+    std::cerr << "verify: " << done << " of " << searches << " searches" << std::endl;
+  });
+  if (json_file) write_output(json_file, json_text(table));
+  if (markdown_file) write_output(markdown_file, markdown_text(table));
+  if (!is_standard_output(json_file) && !is_standard_output(markdown_file))
+    write_standard_output(table_text(table));
+  return 0;
+}
+
+int verify(Arguments& arguments) {
+  EnsembleOptions ensemble;
+  ensemble.members =
+      arguments.whole_number("--members", within(1, double(most_members))).value_or(ensemble.members);
+  ensemble.threads = threads_of(arguments);
+  const fs::path claims_file = arguments.file("--claims").value_or(project_file("data/claims.json")),
+                 runs_folder = arguments.file("--runs").value_or(project_file("build/runs/exact"));
+  const SceneRuns folders{runs_folder, arguments.file("--scenes").value_or(project_file("data/scenes"))};
+  const std::string catalogue_file =
+      arguments.file("--catalogue").value_or(project_file("figures/catalogue.json"));
+  const auto verdicts_file = arguments.file("--output"), markdown_file = arguments.file("--markdown");
+  const bool power = arguments.flag("--power");
+  reject_same_output(arguments, "--markdown", markdown_file, "--output", verdicts_file);
+  arguments.finish();
+
+  const ClaimsFile read = read_claims_file(claims_file);
+  const std::vector<Claim>& claims = read.claims;
+  // Without a catalogue there are no further runs.
+  const bool has_catalogue = arguments.given("--catalogue") || fs::exists(catalogue_file);
+  const Catalogue catalogue = has_catalogue ? read_catalogue(catalogue_file) : Catalogue{};
+  if (arguments.given("--catalogue")) check_figures(catalogue.figures, catalogue_file, claims);
+  const RunNames names = runs_of(claims, catalogue);
+  std::vector<fs::path> inputs{claims_file};
+  if (has_catalogue) inputs.emplace_back(catalogue_file);
+  for (const std::set<std::string>* list : {&names.scenes, &names.further})
+    for (const std::string& name : *list) {
+      const fs::path run = folders.file_of(name);
+      inputs.push_back(run);
+      for (std::int64_t member = 2; member <= most_members; ++member)
+        inputs.push_back(member_file(run, member));
+    }
+  for (const std::string& name : names.responses) inputs.push_back(folders.file_of(name));
+  reject_other_endings(arguments, "--output", verdicts_file, {Format::json});
+  reject_other_endings(arguments, "--markdown", markdown_file, {Format::markdown});
+  arguments.reject_overwriting("--output", verdicts_file, inputs);
+  arguments.reject_overwriting("--markdown", markdown_file, inputs);
+  arguments.finish();
+  for (const auto& file : {markdown_file, verdicts_file}) prepare_output(file);
+
+  std::map<std::string, Response> responses = checked(folders, names, catalogue);
+  if (power)
+    return find_power(folders, claims, names.scenes, catalogue, std::move(responses), ensemble, verdicts_file,
+                      markdown_file);
+  Runs runs(runs_folder, ensemble, catalogue.runs);
+  for (auto& [name, response] : responses) runs.put(name, std::move(response));
+  std::vector<Verified> all;
+  const auto start = std::chrono::steady_clock::now();
+  auto told = start;
+  for (const Claim& claim : claims) {
+    if_interrupted_say(std::to_string(claims.size() - all.size()) + " of " + std::to_string(claims.size()) +
+                       " claims are left" + (verdicts_file ? "; " + left_as_it_was(*verdicts_file) : ""));
+    const auto now = std::chrono::steady_clock::now();
+    if (now - start > std::chrono::seconds(2) && now - told > std::chrono::seconds(1)) {
+      std::cerr << "verify: " << all.size() << " of " << claims.size() << " claims, now " << claim.id
+                << std::endl;
+      told = now;
+    }
+    try {
+      Verified& verified = all.emplace_back(Verified{.claim = &claim, .ours = measure(runs, claim.measure)});
+      for (const auto& [name, call] : claim.also) verified.also[name] = measure(runs, call);
+      verified.words = verified.filled(claim.words);
+      verified.verdict = judge(claim, verified.ours.median);
+    } catch (const InvalidArguments& error) {
+      std::vector<Problem> problems = error.problems();
+      for (Problem& problem : problems) problem.field.insert(0, "claim " + claim.id + ": ");
+      throw InvalidArguments(problems);
+    } catch (const std::invalid_argument& problem) {
+      throw InvalidArguments({{"claim " + claim.id, problem.what()}});
+    }
+  }
+  const std::string engine = runs.engine();
+  for (Verified& each : all) each.recorded = recorded_for(*each.claim, engine);
+  if (verdicts_file) write_output(verdicts_file, verdicts_text(all, read.open));
+  if (markdown_file) write_output(markdown_file, markdown_text(all, read.open, engine));
+  if (!is_standard_output(verdicts_file) && !is_standard_output(markdown_file))
+    write_standard_output(table_text(all, read.open) + "\n" +
+                          (engine.empty() ? "" : "engine " + engine + ", ") + summary_text(all, read.open));
+  return std::all_of(all.begin(), all.end(), [](const Verified& each) { return each.as_recorded(); }) ? 0 : 1;
+}
+
+}  // namespace
+
+Command verify_command() {
+  Command command{.name = "verify",
+                  .description = "Hold the runs against everything the paper reports, claim by claim."};
+  command.options = {
+      input_option("--claims", "FILE", "what the paper reports; default data/claims.json"),
+      input_option("--runs", "FOLDER",
+                   "folder of run files, NAME.json of each scene, further run and\n"
+                   "response, with the other members of its ensemble (run --members);\n"
+                   "default build/runs/exact"),
+      scenes_option(),
+      {.name = "--power",
+       .help =
+           "instead of the verdicts, the smallest change of each\nnumber that turns one of them (minutes)",
+       .takes = Option::Takes::nothing},
+      input_option("--catalogue", "FILE",
+                   "lists the further runs; default figures/catalogue.json. If given, the\n"
+                   "claims that its figures rest on must exist"),
+      {"--members", "N",
+       "use the first N of each ensemble, the run file itself among them;\n"
+       "1 to 100, default 16; --power simulates them"},
+      {"-o,--output", "FILE", "write the verdicts as JSON"},
+      {"--markdown", "FILE", "write the table, with every explanation, as Markdown"},
+      threads_option()};
+  command.footer =
+      "Prints one line for each claim: what the paper prints, what is allowed, what comes out here (median\n"
+      "and extremes over an ensemble of perturbed initial conditions), and the verdict on the median:\n"
+      "reproduced, not reproduced, corrected, or derived where it cannot fail. Claims that are ours and not\n"
+      "the paper's hold or do not hold, and are counted apart. Exit code 1 if a verdict differs from the\n"
+      "recorded one, either way. A run that was altered, contradicts itself or is of another scene or "
+      "engine\n"
+      "than the others is rejected.\n\n"
+      "With --power: one line for each number of the scenes, of the analysis and of what runs record, with "
+      "the\n"
+      "smallest change of it that turns a verdict, and the claims that it turns.\n\n"
+      "Examples:\n"
+      "  impact-damper verify\n"
+      "  impact-damper verify --power --markdown power.md\n"
+      "  impact-damper verify --runs build/runs/cem --members 1 --markdown verdicts.md";
+  command.act = verify;
+  return command;
+}
+
+}  // namespace impact_damper::cli

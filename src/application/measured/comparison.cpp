@@ -1,0 +1,255 @@
+#include "application/measured/comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "impact_damper/analysis/ensemble.hpp"
+#include "impact_damper/analysis/theory.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/io/json_parts.hpp"
+#include "impact_damper/io/run_file.hpp"
+#include "impact_damper/io/scene_file.hpp"
+#include "impact_damper/math/elementary.hpp"
+
+namespace impact_damper {
+namespace {
+
+using Layout = JsonWriter::Layout;
+
+// Returns (M12.1) of the rows; amplitudes and times keep their units, `omega` is in radians per unit of time.
+LossFactor loss_of(HalfCycles rows, double omega) {
+  for (double& each : rows.peak_time) each *= omega;
+  LossFactor loss = local_loss_factor(rows, 0, rows.amplitude.size());
+  for (double& each : loss.time) each /= omega;
+  return loss;
+}
+
+SimulatedDecays decays_of(const SceneInUnits& scene, const Engine& engine, const Reduction& reduction,
+                          const std::vector<LossBin>& bins, const ComparisonOptions& options) {
+  SimulatedDecays result{.scene = scene, .decays = {}, .losses = {}, .bins = {}};
+  result.decays.resize(std::size_t(options.releases));
+  const double until = std::ranges::min(reduction.amplitude);
+  for_each_index(options.releases, options.fit.threads, [&](std::int64_t i) {
+    result.decays[std::size_t(i)] =
+        simulated_half_cycles(decay_scene(scene, reduction, until, options.fit.seed, i), engine);
+  });
+  const double time_unit = scales_of(scene).of(Dimension::time), length = *scene.damper().clearance;
+  std::vector<std::vector<double>> losses(bins.size());
+  for (HalfCycles& rows : result.decays) {
+    const std::vector<double> of_bins = log_losses(rows, length, bins);
+    for (std::size_t k = 0; k < of_bins.size(); ++k) losses[k].push_back(of_bins[k]);
+    for (double& each : rows.peak_time) each *= time_unit;
+    for (double& each : rows.amplitude) each *= length;
+    // Times begin where the record's first peak would be.
+    const double top = logarithm(reduction.amplitude.front());
+    std::size_t begin = 1;
+    while (begin < rows.amplitude.size() && rows.amplitude[begin] > reduction.amplitude.front()) ++begin;
+    if (begin >= rows.amplitude.size()) {
+      rows = {};
+      result.losses.emplace_back();
+      continue;
+    }
+    const double upper = logarithm(rows.amplitude[begin - 1]), lower = logarithm(rows.amplitude[begin]);
+    const double part = upper > lower ? std::clamp((upper - top) / (upper - lower), 0.0, 1.0) : 0;
+    const double shift = reduction.time.front() - rows.peak_time[begin - 1] -
+                         part * (rows.peak_time[begin] - rows.peak_time[begin - 1]);
+    for (double& each : rows.peak_time) each += shift;
+    const auto from = std::ptrdiff_t(begin);
+    rows.peak_time.erase(rows.peak_time.begin(), rows.peak_time.begin() + from);
+    rows.amplitude.erase(rows.amplitude.begin(), rows.amplitude.begin() + from);
+    const std::size_t count = rows.peak_time.size();
+    result.losses.push_back(count < 3 ? LossFactor{}
+                                      : loss_of(rows, half_turn<double>() * double(count - 1) /
+                                                          (rows.peak_time.back() - rows.peak_time[0])));
+  }
+  for (auto& each : losses) {
+    if (each.size() < result.decays.size()) break;
+    result.bins.push_back(exponential(spread_of(std::move(each)).median));
+  }
+  return result;
+}
+
+std::string text_of(double value) { return rounded_text(value, 3); }
+
+void remark_on_what_is_left_out(Comparison& c) {
+  const std::int64_t left_out = c.reduction.clipped + c.reduction.unclear;
+  if (left_out <= std::int64_t(c.reduction.time.size())) return;
+  c.remarks.push_back(
+      "More half cycles are left out, " + std::to_string(left_out) +
+      ", than are used: what disturbs the record, such as impacts that ring in an accelerometer, must be "
+      "filtered out of it first.");
+}
+
+void remark_on_frequency(Comparison& c) {
+  constexpr double tolerance = 0.02;
+  const double f = c.reduction.frequency;
+  if (f >= c.lowest_frequency * (1 - tolerance) && f <= c.highest_frequency * (1 + tolerance)) return;
+  const double nearest = f < c.lowest_frequency ? c.lowest_frequency : c.highest_frequency;
+  c.remarks.push_back(
+      "The record oscillates at " + text_of(f) + " Hz, " + text_of(f / nearest) +
+      " times what the scene does: its sampling rate is wrong, or the scene's mass or stiffness. Loss "
+      "factors are per radian of the record's own oscillation, so a wrong sampling rate does not change "
+      "them" +
+      (c.record.quantity == MeasuredQuantity::acceleration
+           ? ", but it changes the displacements that are made of accelerations: nothing is fitted."
+           : "."));
+}
+
+void remark_on_fit(Comparison& c) {
+  const DecayFit& fit = *c.fit;
+  if (fit.normal_deviate > most_normal_deviate)
+    c.remarks.push_back("No decay in the searched range is like the record: chi square is " +
+                        text_of(fit.chi_square) + " with " + std::to_string(fit.degrees) +
+                        " degrees of freedom. The intervals mean nothing.");
+  for (const FittedParameter& each : fit.parameters) {
+    const std::string name(name_of(each.parameter));
+    const bool is_bounded_by_0 = each.parameter == FitParameter::damping_ratio;
+    if (each.open_below && each.open_above) {
+      c.remarks.push_back("The record does not tell " + name + ": the whole searched range agrees with it.");
+    } else if (each.open_above || (each.open_below && !is_bounded_by_0)) {
+      c.remarks.push_back("The interval of " + name + " ends where the search did, at " +
+                          with_unit(text_of(each.open_above ? each.searched_to : each.searched_from),
+                                    unit_of(each.parameter)) +
+                          ": it may be longer on that side.");
+    }
+  }
+  constexpr double strong = 0.9;
+  for (std::size_t j = 0; j < fit.parameters.size(); ++j) {
+    for (std::size_t k = 0; k < j; ++k) {
+      if (std::abs(fit.correlation[j][k]) < strong) continue;
+      c.remarks.push_back(
+          std::string(name_of(fit.parameters[k].parameter)) + " and " +
+          std::string(name_of(fit.parameters[j].parameter)) +
+          " can hardly be distinguished: their correlation, in ln(1 - e) and logarithms, is " +
+          text_of(fit.correlation[j][k]) + ".");
+    }
+  }
+}
+
+void remark_on_range(Comparison& c) {
+  const SceneInUnits& scene = c.fitted ? c.fitted->scene : c.given.scene;
+  const double fold = fold_amplitude(value_of(scene, FitParameter::restitution)) * *scene.damper().clearance;
+  if (c.reduction.amplitude.back() > fold)
+    c.remarks.push_back(
+        "The record ends at " + text_of(c.reduction.amplitude.back()) + " mm, above the " + text_of(fold) +
+        " mm where impacts cease: from there restitution and clearance could be distinguished.");
+}
+
+void write_decays(JsonWriter& out, std::string_view name, const SimulatedDecays& decays) {
+  out.open_object(name, Layout::lines);
+  out.open_object("scene", Layout::one_line);
+  write_unit_fields(out, decays.scene);
+  out.close();
+  out.open_array("decays", Layout::lines);
+  for (const HalfCycles& each : decays.decays) {
+    out.open_object(Layout::one_line);
+    out.fields("time", each.peak_time, "amplitude", each.amplitude);
+    out.close();
+  }
+  out.close();
+  out.close();
+}
+
+}  // namespace
+
+Comparison compared(const std::string& record_name, const MeasuredRecord& record,
+                    const std::string& scene_name, const SceneInUnits& scene, const Engine& engine,
+                    const ComparisonOptions& options, const std::function<void(const std::string&)>& tell) {
+  std::vector<Problem> problems = problems_of_fit(scene, options.fit);
+  if (options.releases < 1)
+    problems.push_back({"releases", "must be >= 1, got " + std::to_string(options.releases)});
+  require_none(problems);
+  Comparison c;
+  c.record_name = record_name, c.scene_name = scene_name, c.record = record, c.engine = engine;
+  c.reduction = reduced(record_name, record);
+  c.loss = loss_of(half_cycles_of(c.reduction, 1, 1), 2 * half_turn<double>() * c.reduction.frequency);
+  c.bins = loss_bins(c.reduction);
+  c.highest_frequency = scales_of(scene).of(Dimension::frequency);
+  c.lowest_frequency = c.highest_frequency / std::sqrt(1 + dimensionless(scene).damper().mass_ratio);
+  tell("simulating the scene");
+  c.given = decays_of(scene, engine, c.reduction, c.bins, options);
+  remark_on_frequency(c);
+  const bool can_fit = c.remarks.empty() || record.quantity == MeasuredQuantity::displacement;
+  if (can_fit && !options.fit.parameters.empty()) {
+    FitResult result = fit_decay(scene, engine, c.reduction, c.bins, options.fit, tell);
+    c.fit = std::move(result.fit);
+    if (!c.fit) c.remarks.push_back("Nothing is fitted: " + result.problem + ".");
+  }
+  if (c.fit) {
+    SceneInUnits best = scene;
+    for (const FittedParameter& each : c.fit->parameters) set_value(best, each.parameter, each.best);
+    c.fitted = decays_of(best, engine, c.reduction, c.bins, options);
+    remark_on_fit(c);
+  }
+  remark_on_what_is_left_out(c);
+  remark_on_range(c);
+  if (record.quantity == MeasuredQuantity::acceleration)
+    c.remarks.push_back(
+        "Displacements are accelerations divided by the square of the local angular frequency; they may err "
+        "by " +
+        text_of(100 * dimensionless(scene).damper().mass_ratio) + " % (the mass ratio)" +
+        (c.fit ? ", for which the intervals do not allow." : "."));
+  return c;
+}
+
+std::string comparison_text(const Comparison& c) {
+  JsonWriter out("comparison");
+  out.open_object(Layout::lines);
+  out.field("schema", std::string_view("impact-damper/comparison/1"));
+  const Reduction& r = c.reduction;
+  out.object("record", Layout::one_line, "file", c.record_name, "quantity", name_of(c.record.quantity),
+             "samples", r.samples, "empty_cells", c.record.empty_cells, "duration", r.duration,
+             "sampling_rate", r.sampling_rate);
+  out.object("reduction", Layout::one_line, "frequency", r.frequency, "noise", r.noise, "offset", r.offset,
+             "drift", r.drift, "clipped", r.clipped, "in_gaps", r.in_gaps, "unclear", r.unclear,
+             "ends_in_noise", r.ends_in_noise);
+  out.object("half_cycles", Layout::lines, "number", r.half_cycle, "time", r.time, "amplitude", r.amplitude,
+             "error", r.error);
+  out.object("loss_factor", Layout::lines, "amplitude", c.loss.amplitude, "time", c.loss.time, "eta",
+             c.loss.eta);
+  out.open_array("bins", Layout::lines);
+  for (std::size_t k = 0; k < c.bins.size(); ++k) {
+    const LossBin& bin = c.bins[k];
+    std::optional<double> given, fitted, scatter;
+    if (k < c.given.bins.size()) given = c.given.bins[k];
+    if (c.fit) fitted = c.fit->loss[k], scatter = c.fit->scatter[k];
+    out.open_object(Layout::one_line);
+    out.fields("upper", bin.upper, "lower", bin.lower, "half_cycles", bin.half_cycles, "eta", bin.loss,
+               "relative_error", bin.error, "simulated", given, "fitted", fitted, "relative_scatter",
+               scatter);
+    out.close();
+  }
+  out.close();
+  out.object("scene_frequency", Layout::one_line, "lowest", c.lowest_frequency, "highest",
+             c.highest_frequency);
+  write_engine(out, c.engine);
+  write_decays(out, "simulated", c.given);
+  if (c.fit) {
+    out.open_object("fit", Layout::lines);
+    out.open_array("parameters", Layout::lines);
+    for (const FittedParameter& each : c.fit->parameters) {
+      out.open_object(Layout::one_line);
+      out.fields("name", name_of(each.parameter), "unit", unit_of(each.parameter), "best", each.best, "low",
+                 each.low, "high", each.high, "searched_from", each.searched_from, "searched_to",
+                 each.searched_to, "open_below", each.open_below, "open_above", each.open_above);
+      out.close();
+    }
+    out.close();
+    out.open_array("correlation", Layout::lines);
+    for (std::size_t j = 0; j < c.fit->parameters.size(); ++j) {
+      out.open_object(Layout::one_line);
+      out.fields("name", name_of(c.fit->parameters[j].parameter), "with", c.fit->correlation[j]);
+      out.close();
+    }
+    out.close();
+    out.fields("chi_square", c.fit->chi_square, "degrees_of_freedom", c.fit->degrees, "normal_deviate",
+               c.fit->normal_deviate, "runs", c.fit->runs);
+    out.close();
+    write_decays(out, "fitted", *c.fitted);
+  }
+  out.field("remarks", c.remarks);
+  write_provenance(out);
+  return sealed(out.finish());
+}
+
+}  // namespace impact_damper

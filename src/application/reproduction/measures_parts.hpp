@@ -1,0 +1,76 @@
+// Functions that the measures_*.cpp share.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "application/reproduction/claims.hpp"
+#include "application/reproduction/measures.hpp"
+#include "impact_damper/analysis/loss_factor.hpp"
+#include "impact_damper/run.hpp"
+
+namespace impact_damper {
+
+// Return the last entries of a measure's row: the names of the numbers that it requires, and how many scenes
+// and responses a claim may name.
+template <class... Name>
+std::vector<std::string_view> numbers(const Name&... names) {
+  return {names...};
+}
+constexpr Count scenes(std::size_t least, std::size_t most) { return {least, most}; }
+constexpr Count responses(std::size_t least, std::size_t most) { return {least, most}; }
+
+inline constexpr double everywhere = std::numeric_limits<double>::infinity();
+
+struct Curve {
+  std::vector<double> x, y;
+};
+
+// Returns one ordinate over the fitted amplitude, in the order of time, where the amplitude lies in [from,
+// to]. The first point is left out by default: row 0, which ran from the release and is less than a half
+// cycle, is among the peaks that it is fitted to.
+enum class FirstPoint { left_out, counted };
+Curve loss_curve(const Run& run, LossOrdinate which, const LossFactorOptions& fit, double from = 0,
+                 double to = everywhere, FirstPoint first = FirstPoint::left_out);
+
+// Returns the slope of ln y against ln x by least squares.
+double log_slope(const Curve& curve);
+
+// Returns the mean ordinate of each curve, for each of the bins that all of them reach.
+std::vector<std::vector<double>> bin_means(const std::vector<Curve>& curves, double from, double to,
+                                           int bins);
+// Returns how far curves lie apart at equal x: the largest minus the least of their bin means divided by the
+// mean of these, in percent, for each of the bins that all of them reach. The bins are equal in ln x on
+// [from, to].
+inline constexpr int default_bins = AnalysisOptions{}.bins;
+std::vector<double> bin_spreads_percent(const std::vector<Curve>& curves, double from, double to,
+                                        int bins = default_bins);
+// Return the mean, and the largest, of these. NaN if there is none.
+double spread_percent(const std::vector<Curve>& curves, double from, double to, int bins = default_bins);
+double worst_spread_percent(const std::vector<Curve>& curves, double from, double to,
+                            int bins = default_bins);
+
+// Returns NaN for an empty list.
+inline double mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+inline const HalfCycles& half_cycles_of(const Run& run) {
+  if (!run.half_cycles) throw std::invalid_argument("half_cycles: the run did not record them");
+  return *run.half_cycles;
+}
+
+inline double number(const MeasureCall& call, const std::string& name) {
+  const auto found = call.numbers.find(name);
+  if (found == call.numbers.end())
+    throw std::invalid_argument("measure " + call.name + ": " + name + " is missing");
+  return found->second;
+}
+
+}  // namespace impact_damper

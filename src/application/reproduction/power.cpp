@@ -1,0 +1,358 @@
+#include "application/reproduction/power.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <stdexcept>
+#include <utility>
+
+#include "impact_damper/analysis/parallel.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/simulate.hpp"
+
+namespace impact_damper {
+namespace {
+
+// Tests by their names in CTest.
+constexpr std::string_view from_reference = "reference: tables, figures and sums are what the program makes";
+constexpr std::string_view of_analysis = "analysis", of_columns = "columns";
+
+enum class Change { larger, smaller, added };
+
+// Returns changes of two digits from 10^decade to `most`; scanned first are 1, 2, 5, 10 ... times the least.
+Trials two_digit_trials(double value, Change change, int decade, double most) {
+  Trials trials;
+  for (;; ++decade) {
+    for (int digits = 10; digits < 100; ++digits) {
+      const double s = *parse_number(std::to_string(digits) + "e" + std::to_string(decade - 1));
+      if (s > most) return trials;
+      const bool is_first = digits == 10 || digits == 20 || digits == 50 || s == most;
+      if (is_first) trials.first.push_back(trials.all.size());
+      const double becomes = change == Change::larger    ? value * (1 + s)
+                             : change == Change::smaller ? value / (1 + s)
+                                                         : s;
+      trials.all.push_back({s, becomes});
+    }
+  }
+}
+
+// The least change is 10^thousandths; the largest gives four times the value, or a quarter of it.
+constexpr int thousandths = -3;
+constexpr double to_four_times = 3;
+
+Trials whole_number_trials(double value, double step, double last) {
+  Trials trials;
+  for (int i = 1;; ++i) {
+    const double each = value + i * step;
+    if (!(step > 0 ? each <= last : each >= last)) return trials;
+    trials.first.push_back(trials.all.size());
+    trials.all.push_back({std::abs(each - value) / value, each});
+  }
+}
+
+void keep_valid(Trials& trials, const std::function<bool(double)>& is_valid) {
+  const auto end = std::ranges::find_if(trials.all, [&](const Trial& each) { return !is_valid(each.value); });
+  trials.all.erase(end, trials.all.end());
+  std::erase_if(trials.first, [&](std::size_t i) { return i >= trials.all.size(); });
+  if (!trials.all.empty() && (trials.first.empty() || trials.first.back() + 1 < trials.all.size()))
+    trials.first.push_back(trials.all.size() - 1);
+}
+
+// A number of a scene; the two stops are numbers as well.
+struct Changeable {
+  std::string name;
+  SceneNumber number{};
+  std::optional<double> Scene::*stop = nullptr;
+
+  std::optional<double> of(const Scene& scene) const { return stop ? scene.*stop : number.in(scene); }
+  void set(Scene& scene, double value) const {
+    if (stop)
+      scene.*stop = value;
+    else
+      number.in(scene) = value;
+  }
+};
+std::vector<Changeable> changeable(const Scene& scene) {
+  std::vector<Changeable> all;
+  for (const NamedSceneNumber& each : numbers_of(scene)) all.push_back({each.name, each.number});
+  all.push_back({.name = "until_time", .stop = &Scene::until_time});
+  all.push_back({.name = "until_amplitude", .stop = &Scene::until_amplitude});
+  return all;
+}
+
+std::vector<PowerNumber> numbers_of(const std::string& name, const Scene& scene) {
+  std::vector<PowerNumber> numbers;
+  for (const Changeable& each : changeable(scene)) {
+    if (!each.of(scene)) continue;                                               // a stop that is not given
+    if (each.name == "force_frequency" && scene.force_amplitude == 0) continue;  // without a force
+    const double value = *each.of(scene);
+    PowerNumber number{.of = name, .name = each.name, .value = value, .noticed_by = from_reference};
+    const auto is_valid = [&](double becomes) {
+      Scene changed = scene;
+      each.set(changed, becomes);
+      return problems_of(changed).empty();
+    };
+    if (value == 0) {
+      number.up = two_digit_trials(0, Change::added, -5, 1);
+    } else {
+      number.up = two_digit_trials(value, Change::larger, thousandths, to_four_times);
+      number.down = two_digit_trials(value, Change::smaller, thousandths, to_four_times);
+    }
+    for (auto* trials : {&number.up, &number.down}) {
+      if (!*trials) continue;
+      keep_valid(**trials, is_valid);
+      if ((*trials)->all.empty()) trials->reset();
+    }
+    numbers.push_back(std::move(number));
+  }
+  return numbers;
+}
+
+// Options that verdicts depend on, besides the runs.
+struct Settings {
+  EnsembleOptions ensemble;
+  AnalysisOptions analysis;
+};
+struct AnalysisNumber {
+  std::string_view name;
+  double (*get)(const Settings&);
+  void (*set)(Settings&, double);
+  double least, most,
+      step;  // whole numbers in steps of this; 0: any number, by changes from 0.001 to 1000
+  std::string_view noticed_by;
+};
+const std::vector<AnalysisNumber>& analysis_numbers() {
+  static const std::vector<AnalysisNumber> table{
+      {"averaged_over", [](const Settings& s) { return double(s.analysis.loss.half_cycles); },
+       [](Settings& s, double value) { s.analysis.loss.half_cycles = int(value); }, 10, 18, 2,
+       "measures_of_runs: measures of the loss factor are what they are for amplitudes that fall evenly"},
+      {"smoothed_over", [](const Settings& s) { return double(s.analysis.smoother_loss.half_cycles); },
+       [](Settings& s, double value) { s.analysis.smoother_loss.half_cycles = int(value); }, 10, 18, 2,
+       "measures_of_runs: measures of the loss factor are what they are for amplitudes that fall evenly"},
+      {"bins", [](const Settings& s) { return double(s.analysis.bins); },
+       [](Settings& s, double value) { s.analysis.bins = int(value); }, 1, 48, 1,
+       "measures: the spread is averaged over twelve bins, equal in the logarithm"},
+      {"stuck_contact_times", [](const Settings& s) { return s.analysis.regimes.stuck_contact_times; },
+       [](Settings& s, double value) { s.analysis.regimes.stuck_contact_times = value; }, 0, 0, 0,
+       "regimes: a compliant contact is stuck once it outlasts a full period, a rigid one always"},
+      {"bounce_down_half_cycles",
+       [](const Settings& s) { return double(s.analysis.regimes.bounce_down_half_cycles); },
+       [](Settings& s, double value) { s.analysis.regimes.bounce_down_half_cycles = std::int64_t(value); }, 1,
+       16, 1, "regimes: bounce-down ends with the first unbroken series of stuck half cycles"},
+      {"window_half_cycles", [](const Settings& s) { return double(s.analysis.regimes.window_half_cycles); },
+       [](Settings& s, double value) { s.analysis.regimes.window_half_cycles = std::int64_t(value); }, 1, 32,
+       1, "regimes: regular windows are maximal series of equal counts"},
+      {"failure_half_cycles",
+       [](const Settings& s) { return double(s.analysis.regimes.failure_half_cycles); },
+       [](Settings& s, double value) { s.analysis.regimes.failure_half_cycles = std::int64_t(value); }, 1, 12,
+       1, "regimes: impact failure is for good where no three half cycles bring three impacts any more"},
+      {"members", [](const Settings& s) { return double(s.ensemble.members); },
+       [](Settings& s, double value) { s.ensemble.members = std::int64_t(value); }, 1, 64, 1, from_reference},
+      {"ensemble_step", [](const Settings& s) { return s.ensemble.step; },
+       [](Settings& s, double value) { s.ensemble.step = value; }, 0, 0, 0, from_reference},
+  };
+  return table;
+}
+
+std::vector<PowerNumber> numbers_of(const Settings& settings) {
+  std::vector<PowerNumber> numbers;
+  for (const AnalysisNumber& each : analysis_numbers()) {
+    PowerNumber number{.of = std::string(of_analysis),
+                       .name = std::string(each.name),
+                       .value = each.get(settings),
+                       .noticed_by = each.noticed_by};
+    if (each.step == 0) {
+      number.up = two_digit_trials(number.value, Change::larger, thousandths, 1000);
+      number.down = two_digit_trials(number.value, Change::smaller, thousandths, 1000);
+    } else {
+      number.up = whole_number_trials(number.value, each.step, each.most);
+      number.down = whole_number_trials(number.value, -each.step, each.least);
+    }
+    for (auto* trials : {&number.up, &number.down})
+      if ((*trials)->all.empty()) trials->reset();
+    numbers.push_back(std::move(number));
+  }
+  for (const RecordedColumn& column : recorded_columns())
+    numbers.push_back(
+        {.of = std::string(of_columns),
+         .name = std::string(column.name),
+         .value = 1,
+         .up = two_digit_trials(1, Change::larger, thousandths, to_four_times),
+         .down = two_digit_trials(1, Change::smaller, thousandths, to_four_times),
+         .noticed_by = "recorded: all that the exact engine records is what a plain integration finds"});
+  return numbers;
+}
+
+const auto by_name = [](const auto& table, std::string_view name) -> const auto& {
+  const auto found = std::ranges::find_if(table, [&](const auto& each) { return each.name == name; });
+  if (found == table.end()) throw std::logic_error("no number is called " + std::string(name));
+  return *found;
+};
+
+Runs runs_with(const PowerInput& input, const Settings& settings, std::optional<WrongColumn> wrong = {}) {
+  Runs runs(std::nullopt, settings.ensemble, input.further, settings.analysis, wrong, input.asked);
+  for (const auto& [scene, run] : input.runs) runs.put(scene, run);
+  for (const auto& [name, response] : input.responses) runs.put(name, response);
+  for (const auto& [scene, run] : input.runs) runs.ensemble(scene);
+  return runs;
+}
+
+std::vector<Verdict> verdicts_of(const std::vector<Claim>& claims, Runs& runs) {
+  std::vector<Verdict> verdicts;
+  verdicts.reserve(claims.size());
+  for (const Claim& claim : claims) verdicts.push_back(judge(claim, measure(runs, claim.measure).median));
+  return verdicts;
+}
+
+bool looks_at(const Claim& claim, const PowerNumber& number, const PowerInput& input) {
+  if (number.of == of_analysis || number.of == of_columns) return true;
+  return std::ranges::any_of(claim.measure.scenes,
+                             [&](const std::string& name) {
+                               const CatalogueRun* const run = find_run(input.further, name);
+                               return (run ? run->scene : name) == number.of;
+                             }) ||
+         std::ranges::any_of(claim.measure.responses, [&](const std::string& name) {
+           const CatalogueResponse* const asked = find_response(input.asked, name);
+           return asked && asked->scene == number.of;
+         });
+}
+
+// Leaves each sweep its first start: others would be repeated for each change and take most of the time.
+void keep_first_starts(PowerInput& input) {
+  for (CatalogueResponse& each : input.asked)
+    if (auto* const sweeps = std::get_if<SweepResponse>(&each.asked)) sweeps->sweeps.resize(1);
+  for (auto& [name, response] : input.responses)
+    if (auto* const sweeps = std::get_if<SweepResponse>(&response)) sweeps->sweeps.resize(1);
+}
+
+}  // namespace
+
+std::optional<Trial> smallest_turn(const Trials& trials, const std::function<bool(double)>& turns) {
+  std::size_t low = 0;  // the trials before it count as turning no verdict
+  for (const std::size_t next : trials.first) {
+    if (!turns(trials.all[next].value)) {
+      low = next + 1;
+      continue;
+    }
+    std::size_t high = next;
+    while (low < high) {
+      const std::size_t middle = low + (high - low) / 2;
+      if (turns(trials.all[middle].value))
+        high = middle;
+      else
+        low = middle + 1;
+    }
+    return trials.all[high];
+  }
+  return std::nullopt;
+}
+
+std::vector<Claim> claims_on_scenes_of(const Catalogue& catalogue, std::vector<Claim> claims) {
+  std::erase_if(claims, [&](const Claim& claim) {
+    return std::ranges::any_of(claim.measure.scenes, [&](const std::string& name) {
+      const CatalogueRun* const run = find_run(catalogue.runs, name);
+      return run && !find_scene(catalogue, run->scene);
+    });
+  });
+  return claims;
+}
+
+std::vector<std::string> unsettled_claims(const PowerInput& input, std::int64_t ensembles) {
+  std::vector<std::vector<Verdict>> verdicts(static_cast<std::size_t>(ensembles) + 1);
+  for_each_index(ensembles + 1, input.ensemble.threads, [&](std::int64_t i) {
+    Settings settings{input.ensemble, {}};
+    settings.ensemble.threads = 1;
+    settings.ensemble.seed += static_cast<std::uint64_t>(i);
+    Runs runs = runs_with(input, settings);
+    verdicts[static_cast<std::size_t>(i)] = verdicts_of(input.claims, runs);
+  });
+  std::vector<std::string> ids;
+  for (std::size_t claim = 0; claim < input.claims.size(); ++claim)
+    if (std::ranges::any_of(verdicts, [&](const auto& each) { return each[claim] != verdicts[0][claim]; }))
+      ids.push_back(input.claims[claim].id);
+  return ids;
+}
+
+Power::Power(PowerInput input)
+    : input_(std::move(input)), threads_(input_.ensemble.threads), unchanged_(std::nullopt) {
+  // The threads are for the searches; each ensemble uses one.
+  input_.ensemble.threads = 1;
+  keep_first_starts(input_);
+  const Settings settings{input_.ensemble, {}};
+  unchanged_ = runs_with(input_, settings);
+  std::erase_if(input_.claims, [&](const Claim& claim) {
+    return std::ranges::find(input_.left_out, claim.id) != input_.left_out.end();
+  });
+  verdicts_ = verdicts_of(input_.claims, unchanged_);
+  for (const auto& [name, run] : input_.runs)
+    for (PowerNumber& number : numbers_of(name, run.scene)) numbers_.push_back(std::move(number));
+  for (PowerNumber& number : numbers_of(settings)) numbers_.push_back(std::move(number));
+}
+
+Runs Power::changed(const PowerNumber& number, double value) const {
+  if (number.of == of_columns)
+    return runs_with(input_, {input_.ensemble, {}},
+                     WrongColumn{by_name(recorded_columns(), number.name), value});
+  if (number.of == of_analysis) {
+    Settings settings{input_.ensemble, {}};
+    by_name(analysis_numbers(), number.name).set(settings, value);
+    return runs_with(input_, settings);
+  }
+  Runs runs = unchanged_;
+  const Run& run = input_.runs.at(number.of);
+  Scene scene = run.scene;
+  const std::vector<Changeable> numbers = changeable(scene);
+  by_name(numbers, number.name).set(scene, value);
+  Record record;
+  record.impacts = record.contacts = true;
+  runs.put(number.of, simulate(scene, run.engine, record));
+  return runs;
+}
+
+std::vector<std::string> Power::turned(const PowerNumber& number, double value, bool all) const {
+  std::vector<std::string> claims;
+  std::optional<Runs> runs;
+  for (std::size_t i = 0; i < input_.claims.size(); ++i) {
+    const Claim& claim = input_.claims[i];
+    if (!looks_at(claim, number, input_)) continue;
+    try {
+      if (!runs) runs = changed(number, value);
+      if (judge(claim, measure(*runs, claim.measure).median) == verdicts_[i]) continue;
+    } catch (const std::exception&) {
+      // `verify` ends with an error there, which counts as a turned verdict.
+    }
+    claims.push_back(claim.id);
+    if (!all) break;
+  }
+  return claims;
+}
+
+std::vector<PowerRow> Power::table(const std::function<void(std::size_t, std::size_t)>& tell) const {
+  std::vector<PowerRow> rows;
+  rows.reserve(numbers_.size());
+  for (const PowerNumber& number : numbers_) rows.push_back({.number = number});
+  struct Search {
+    const PowerNumber* number;
+    const Trials* trials;
+    std::optional<Direction>* found;
+  };
+  std::vector<Search> searches;
+  for (PowerRow& row : rows) {
+    if (row.number.up) searches.push_back({&row.number, &*row.number.up, &row.up});
+    if (row.number.down) searches.push_back({&row.number, &*row.number.down, &row.down});
+  }
+  std::atomic<std::size_t> done{0};
+  for_each_index(std::int64_t(searches.size()), threads_, [&](std::int64_t i) {
+    const Search& search = searches[std::size_t(i)];
+    *search.found = Direction{.searched_to = search.trials->all.back()};
+    const auto turns = [&](double value) { return !turned(*search.number, value, false).empty(); };
+    if (const auto trial = smallest_turn(*search.trials, turns))
+      (*search.found)->turn = Turn{*trial, turned(*search.number, trial->value)};
+    tell(++done, searches.size());
+  });
+  return rows;
+}
+
+}  // namespace impact_damper

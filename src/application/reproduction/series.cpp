@@ -1,0 +1,274 @@
+#include "application/reproduction/series.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <variant>
+
+#include "application/reproduction/series_blocks.hpp"
+#include "impact_damper/base/errors.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/engine_options.hpp"
+#include "impact_damper/io/scene_file.hpp"
+
+namespace impact_damper {
+namespace {
+
+double of(const Scene& scene, Varied varied) {
+  switch (varied) {
+    case Varied::mass_ratio:
+      return scene.damper().mass_ratio;
+    case Varied::damping_ratio:
+      return scene.damping_ratio;
+    case Varied::restitution:
+      return scene.damper().restitution;
+  }
+  return 0;
+}
+
+// Returns a ratio in percent, without the rounding error of the product by 100.
+std::string percent(double ratio) {
+  return number_text(std::round(ratio * 1e12) / 1e10) + (ratio == 0 ? "" : " %");
+}
+
+// Returns "ν = 2 %", as legends and subtitles show it.
+std::string equation(const Scene& scene, Varied varied) {
+  switch (varied) {
+    case Varied::mass_ratio:
+      return "ν = " + percent(scene.damper().mass_ratio);
+    case Varied::damping_ratio:
+      return "ζ = " + percent(scene.damping_ratio);
+    case Varied::restitution:
+      return "e = " + number_text(scene.damper().restitution);
+  }
+  return "";
+}
+
+// The engine in words, for the line under the title; each run has a step of its own.
+struct EngineWords {
+  const std::vector<const FigureRun*>& runs;
+
+  std::string operator()(const Exact&) const { return "exact engine"; }
+  std::string operator()(const Restitution&) const { return "restitution model"; }
+  std::string operator()(const Cem&) const {
+    std::vector<double> steps;
+    for (const FigureRun* source : runs) {
+      const auto& step = std::get<Cem>(source->run.engine).time_step;
+      if (step) steps.push_back(*step);
+    }
+    if (steps.empty()) return "component element method";
+    const auto [least, most] = std::ranges::minmax(steps);
+    return "component element method, step " + rounded_text(least, 3) +
+           (least < most ? " to " + rounded_text(most, 3) : "");
+  }
+};
+
+// Returns the line under the title: what all curves have in common, and what distinguishes one.
+std::string subtitle(const Figure& figure, const std::vector<const FigureRun*>& runs, const Scene& scene) {
+  std::string text;
+  for (const Varied varied : {Varied::mass_ratio, Varied::restitution, Varied::damping_ratio}) {
+    if (figure.varied == varied) continue;
+    text += (text.empty() ? "" : ", ") + equation(scene, varied);
+  }
+  for (std::size_t i = 0; i < figure.curves.size(); ++i) {
+    const int span = figure.curves[i].loss_factor.half_cycles;
+    if (!figure.varied || span == LossFactorOptions{}.half_cycles) continue;
+    text += "; " + equation(runs[i]->run.scene, *figure.varied) + " averaged over " + std::to_string(span) +
+            " half cycles";
+  }
+  // The exact engine is the default; a figure made with another one says so.
+  if (!runs.empty() && !std::holds_alternative<Exact>(runs[0]->run.engine)) {
+    text += std::string(figure.responses.empty() ? "; " : "; free decay: ") +
+            std::visit(EngineWords{runs}, runs[0]->run.engine);
+  }
+  return text;
+}
+
+void check_comparable(const Figure& figure, const std::vector<const FigureRun*>& runs) {
+  for (const FigureRun* other : runs) {
+    if (name_of(other->run.engine) != name_of(runs[0]->run.engine)) {
+      throw unusable(figure, other->file, "comes from another engine than " + runs[0]->file.string());
+    }
+    for (const Varied same : {Varied::mass_ratio, Varied::restitution, Varied::damping_ratio}) {
+      if (figure.varied != same && of(other->run.scene, same) != of(runs[0]->run.scene, same)) {
+        throw unusable(figure, other->file,
+                       "must have the same " + std::string(name_of(same)) + " as " + runs[0]->file.string());
+      }
+    }
+  }
+}
+
+// Throws unusable() unless all have the scene's mass ratio, restitution and damping ratio; forces may differ.
+void check_comparable(const Figure& figure, const std::vector<const FigureResponse*>& sources,
+                      const Scene& scene) {
+  for (const FigureResponse* source : sources)
+    for (const Varied same : {Varied::mass_ratio, Varied::restitution, Varied::damping_ratio})
+      if (of(scene_of(source->response), same) != of(scene, same))
+        throw unusable(figure, source->file,
+                       "must have the same " + std::string(name_of(same)) + " as the figure's others");
+}
+
+// Returns the request of a response without its scene, as text.
+std::string question_of(const Response& response) {
+  std::string text;
+  for (const auto& [pointer, part] : asked_of(response))
+    if (!pointer.starts_with("/scene/"))
+      text.append(text.empty() ? "" : ", ").append(pointer).append(" ").append(part);
+  return text;
+}
+
+void add_decay_block(const Figure& figure, const FigureRun& source, const std::string& number,
+                     const std::string& legend, Table& table) {
+  const HalfCycles& rows = half_cycles_of(figure, source);
+  table.blocks.push_back(
+      {.name = "curve-" + number,
+       .columns = {{"time", "time of the peak, in units of 1/Omega_n", rows.peak_time},
+                   {legend, "peak amplitude of the half cycle, divided by the clearance", rows.amplitude}}});
+}
+
+// With A eta / nu constant the amplitude falls on a straight line, dA/dt = -rate nu. The rate of each curve
+// is its chord's, from the first peak to the first that is not above Figure::down_to; the line has the mean
+// of the rates and begins at the mean of the first peaks.
+void add_law_blocks(const Figure& figure, const std::vector<const FigureRun*>& sources, Table& table) {
+  TableBlock law{.name = "law",
+                 .notes = {"one row for each curve, from its first peak to the first that is not above " +
+                           number_text(*figure.down_to)},
+                 .columns = {{"mass ratio", "nu = m/M", {}}, {"rate", "average of -dA/dt / nu", {}}}};
+  double begin = 0, amplitude = 0, rate = 0;  // sums, then means
+  for (const FigureRun* source : sources) {
+    const HalfCycles& rows = half_cycles_of(figure, *source);
+    const auto end = static_cast<std::size_t>(
+        std::ranges::find_if(rows.amplitude, [&](double a) { return a <= *figure.down_to; }) -
+        rows.amplitude.begin());
+    if (end == 0) return;  // it begins there: no chord
+    const double nu = source->run.scene.damper().mass_ratio;
+    law.columns[0].values.push_back(nu);
+    law.columns[1].values.push_back((rows.amplitude[0] - rows.amplitude[end]) /
+                                    (nu * (rows.peak_time[end] - rows.peak_time[0])));
+    begin += nu * rows.peak_time[0];
+    amplitude += rows.amplitude[0];
+    rate += law.columns[1].values.back();
+  }
+  for (double* sum : {&begin, &amplitude, &rate}) *sum /= static_cast<double>(sources.size());
+  table.blocks.push_back(std::move(law));
+  table.blocks.push_back({.name = "line",
+                          .notes = {"dA/dt = -rate nu with the mean of the rates"},
+                          .columns = {{"scaled time", "nu t", {begin, begin + amplitude / rate}},
+                                      {"dA/dt = −" + rounded_text(rate, 2) + " ν",
+                                       "amplitude, divided by the clearance",
+                                       {amplitude, 0}}}});
+}
+
+}  // namespace
+
+std::string options_text(const Engine& engine) {
+  std::string text(name_of(engine));
+  for_each_option(engine, [&](const OptionInfo& option, const auto& value) {
+    const std::string given = option_text(value);
+    if (option.decides_motion && !given.empty()) text += " " + std::string(option.name) + "=" + given;
+  });
+  return text;
+}
+
+InputError unusable(const Figure& figure, const std::filesystem::path& file, const std::string& why) {
+  return InputError({"figure " + figure.number + ": " + file.string() + ": " + why});
+}
+
+const HalfCycles& half_cycles_of(const Figure& figure, const FigureRun& source) {
+  if (!source.run.half_cycles) throw unusable(figure, source.file, "holds no half_cycles");
+  const HalfCycles& rows = *source.run.half_cycles;
+  if (rows.amplitude.empty()) throw unusable(figure, source.file, "holds not one half cycle");
+  for (const auto* column : {&rows.zero_crossing, &rows.peak_time, &rows.amplitude}) {
+    for (const double value : *column) {
+      if (!std::isfinite(value)) throw unusable(figure, source.file, "holds a half cycle that is not finite");
+    }
+  }
+  const double least = *std::ranges::min_element(rows.amplitude);
+  if (figure.down_to && !(least <= *figure.down_to)) {
+    throw unusable(figure, source.file,
+                   "is too short: must reach an amplitude of " + number_text(*figure.down_to) +
+                       ", ends after " + std::to_string(rows.amplitude.size()) + " half cycles at " +
+                       number_text(rows.amplitude.back()) + " (stopped by " +
+                       std::string(name_of(source.run.stop_reason)) + ")");
+  }
+  return rows;
+}
+
+std::int64_t members_shown(const Figure& figure, const std::string& scene) {
+  std::int64_t members = 0;
+  for (const FigureCurve& curve : figure.curves)
+    if (curve.scene == scene) members = std::max(members, curve.ensemble);
+  return members;
+}
+
+Table figure_table(const Figure& figure, const FigureRuns& runs, const FigureResponses& responses,
+                   const FigureSweeps& sweeps) {
+  if (figure.table == TableKind::design_charts) return design_table(figure, sweeps.at(figure.plan));
+  if (figure.table == TableKind::damper_sets) return damper_sets_table(figure, runs);
+  std::vector<const FigureRun*> sources;
+  for (const FigureCurve& curve : figure.curves) sources.push_back(&runs.at(curve.scene));
+  std::vector<const FigureResponse*> found;
+  for (const std::string& name : figure.responses) found.push_back(&responses.at(name));
+  const Scene& scene = sources.empty() ? scene_of(found.at(0)->response) : sources[0]->run.scene;
+  check_comparable(figure, sources);
+  check_comparable(figure, found, scene);
+
+  Table table;
+  table.header = {"Figure " + figure.number + ": " + figure.title,
+                  "Parameters: " + subtitle(figure, sources, scene), "Script: " + figure.script};
+  for (const std::string& name : scenes_of(figure)) {
+    const Run& run = runs.at(name).run;
+    table.header.push_back("Scene " + name + ": " + scene_text(run.scene));
+    table.header.push_back("  engine: " + options_text(run.engine));
+  }
+  for (const std::string& name : figure.responses) {
+    const Response& response = responses.at(name).response;
+    table.header.push_back("Response " + name + ": " + scene_text(scene_of(response)));
+    table.header.push_back("  " + question_of(response));
+  }
+  switch (figure.table) {
+    case TableKind::motion:
+      add_motion_blocks(figure, *sources[0], table);
+      break;
+    case TableKind::decay:
+    case TableKind::loss_factor:
+      for (std::size_t i = 0; i < sources.size(); ++i) {
+        const std::string number = std::to_string(i + 1);
+        const std::string legend =
+            figure.varied ? equation(sources[i]->run.scene, *figure.varied) : figure.curves[i].scene;
+        if (figure.table == TableKind::decay) {
+          add_decay_block(figure, *sources[i], number, legend, table);
+        } else {
+          add_loss_block(figure, figure.curves[i], *sources[i], number, legend, table);
+        }
+      }
+      if (figure.table == TableKind::decay && figure.down_to) add_law_blocks(figure, sources, table);
+      if (!figure.range.empty()) add_spread_block(figure, table);
+      if (figure.table == TableKind::loss_factor) add_loss_theory_blocks(figure, sources, table);
+      break;
+    case TableKind::phase:
+      add_phase_blocks(figure, *sources[0], table);
+      break;
+    case TableKind::response:
+      add_response_blocks(figure, found, table);
+      break;
+    case TableKind::largest_response:
+      add_largest_blocks(figure, *sources[0], found, table);
+      break;
+    case TableKind::response_map:
+      add_map_blocks(figure, *found[0], table);
+      break;
+    case TableKind::design_charts:
+    case TableKind::damper_sets:
+    case TableKind::drawing:
+      break;
+  }
+  try {
+    check(table);
+  } catch (const std::domain_error& error) {
+    throw unusable(figure, sources.empty() ? found[0]->file : sources[0]->file, error.what());
+  }
+  return table;
+}
+
+}  // namespace impact_damper

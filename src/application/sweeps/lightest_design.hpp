@@ -1,0 +1,119 @@
+// Search for the lightest secondary mass, and its clearance, with which a free decay falls below an amplitude
+// within a time, even if restitution, clearance and other numbers deviate within tolerances
+// (docs/mathematics.md, chapter 15). Masses in kg, lengths in mm, times in s.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "application/sweeps/plan.hpp"
+#include "impact_damper/analysis/parallel.hpp"
+
+namespace impact_damper {
+
+// Wilson's interval (M15.9): it contains the probability of an event that occurred `count` times in `of` > 0
+// independent trials with a confidence of 95 %.
+struct ShareInterval {
+  double low = 0, high = 1;
+};
+ShareInterval interval_of_share(std::int64_t count, std::int64_t of);
+
+struct DesignRange {
+  double least = 0, most = 0;  // 0 < least < most
+};
+
+struct DesignQuestion {
+  // A free decay, with the secondary mass released at the left wall. The search does not use its secondary
+  // mass, clearance and stops, but design_text() needs the first two.
+  SceneInUnits scene;
+  Engine engine;
+  double amplitude = 0;  // mm, > 0 and < |initial displacement|: the decay must fall below it
+  double time = 0;       // s, > 0: and must do so within this time
+  // Required share of neighbours in time, 0.5 to 0.999. Neighbours are variations within the tolerances.
+  double share = 0.99;
+  DesignRange secondary_mass, clearance;
+  std::vector<SampledNumber> tolerances;  // uniform about the design's value; at least one
+  std::int64_t neighbours = 10'000;       // >= 1, simulated in the check of a design
+  std::int64_t seed = 1;                  // >= 0, for the search; the check uses seed + 1
+};
+inline constexpr double most_mass_ratio = 0.2, least_mass_ratio = 0.005;  // of the default range
+// Returns the default range, kg, for a primary mass; rounded to three digits.
+DesignRange default_masses(double mass);
+// Returns the clearance with which impacts fail at an amplitude (M15.12); absent for e = 1: they never fail.
+std::optional<double> failing_clearance(double amplitude, double restitution);
+// Returns the default range: from the amplitude up to the clearance that (M12.3) recommends for it, at most
+// 100 times as wide, rounded to three digits.
+DesignRange default_clearances(double amplitude, double restitution);
+
+// Returns a dimensionless scene in units: M = 1 kg, K = 1 N/m, clearance 1 mm. Its second is 1/Omega_n.
+SceneInUnits with_unit_scales(const Scene& scene);
+// Returns the scene with default values written out, so that tolerances can vary them.
+SceneInUnits with_defaults(SceneInUnits scene);
+
+// Empty if the question is valid. Fields: those of DesignQuestion, with "tolerance", or of the scene.
+std::vector<Problem> problems_of(const DesignQuestion& question);
+
+struct Design {
+  double secondary_mass = 0, clearance = 0;
+
+  bool operator==(const Design&) const = default;
+};
+// Returns the design as a scene in units that ends below the amplitude, or at `time`. Only in_units is set,
+// here and in the plans below; the dimensionless scene is dimensionless(*file.in_units). The plans need a
+// valid question.
+SceneFile scene_of_design(const DesignQuestion& question, const Design& design, double time);
+// Returns the plan of the search: all pairs of masses and clearances, each with the same draws.
+Plan search_plan(const DesignQuestion& question, double time, std::vector<double> masses,
+                 std::vector<double> clearances);
+// Returns the plan of a design's check: other draws, simulated for longest_followed times the question's
+// time.
+Plan check_plan(const DesignQuestion& question, const Design& design);
+inline constexpr double longest_followed = 10;
+
+struct DesignCheck {
+  std::optional<double> nominal_time;  // of the design itself; absent if its run ends earlier
+  std::int64_t in_time = 0;            // neighbours within the time of the design
+  ShareInterval share;                 // interval of their share
+  // Times by which the question's share of the neighbours, and all of them, are below the amplitude; absent
+  // likewise.
+  std::optional<double> time_of_share, slowest;
+  double largest_impact_speed = 0;           // of all neighbours, mm/s
+  std::optional<double> largest_wall_force;  // N; absent with rigid walls and long contacts
+  // confirmed: share.low >= the question's share; rejected: share.high < it; neither: the neighbours do not
+  // decide.
+  bool confirmed = false, rejected = false;
+};
+struct FoundDesign {
+  double time = 0, widest = 0;  // the time and the widest clearance that the search was given
+  Design design;
+  DesignCheck check;
+};
+struct DesignAnswer {
+  std::int64_t draws = 0, late_allowed = 0;  // in the search: draws of a design, of which so many may be late
+  std::int64_t runs = 0;                     // of the search
+  // Time of the primary mass alone; absent like DesignCheck::nominal_time.
+  std::optional<double> time_of_viscous_damping;
+  // The lightest design, then the lightest with at most half and a quarter of the widest clearance, and for
+  // 0.8 and 0.6 of the time, as far as they exist and differ. If no design is in time, `met` is false and the
+  // only entry has the heaviest secondary mass and its soonest clearance; there is none if that takes longer
+  // than longest_followed times the time.
+  std::vector<FoundDesign> designs;
+  bool met = false;
+};
+// Searches for the designs and checks them; `tell` receives a text for each stage that begins. Throws
+// InvalidArguments if the question is not valid. The result does not depend on the number of threads.
+DesignAnswer find_designs(const DesignQuestion& question, const Threads& threads,
+                          const std::function<void(const std::string& doing)>& tell);
+
+// Returns how many late draws (M15.10) allows among `draws`; -1 if these are too few even without a late one.
+std::int64_t late_allowed_of(std::int64_t draws, double share);
+// Returns the least number of draws that are not too few.
+std::int64_t least_neighbours_of(double share);
+// Returns values from `least` to `most` in steps of `ratio` > 1, rounded to three digits except both ends
+// (M15.11).
+std::vector<double> steps_between(DesignRange range, double ratio);
+
+}  // namespace impact_damper

@@ -1,0 +1,90 @@
+// The Poincare map of a scene under a force, with its exact derivative, which at a periodic orbit is the
+// monodromy matrix (docs/mathematics.md, chapter 13).
+//
+// A force f0 sin(omega_f t) changes its sign after half a period, and the equations are the same in the
+// mirror x -> -x, y -> 1 - y (clearance - y for each damper of a list); velocities change their sign. H is
+// half a period of motion followed by that mirror (M13.1); H applied twice is one period. A motion of m
+// periods that repeats itself is a fixed point of H^(2m); one that is its own mirror image half a period
+// later, of H^m with m odd.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "impact_damper/base/expected.hpp"
+#include "impact_damper/math/dense.hpp"
+#include "impact_damper/motion/state.hpp"
+#include "impact_damper/orbits/orbit_impact.hpp"
+#include "impact_damper/run.hpp"
+#include "impact_damper/steady/steady_state.hpp"
+
+namespace impact_damper {
+
+// x, v = x', then y and w = y' of each damper, by number in the scene.
+using StateVector = Vector;
+using StateMatrix = Matrix;
+StateVector vector_of(const SceneState& s);
+// The inverse: s has as many components as a state of the scene, with its one damper or all of its list.
+SceneState state_of(const StateVector& s);
+
+struct PoincareImage {
+  SceneState state{};    // H^n(s)
+  StateMatrix by_state;  // its derivative by s
+  // Its derivatives by omega_f and by f0; meaningless unless Derivatives::by_state_and_parameters was asked
+  // for.
+  StateVector by_frequency, by_amplitude;
+  std::vector<OrbitImpact> impacts;  // in these n half periods, not mirrored
+  // Rigid walls: how often a secondary mass comes to stick. One that sticks when the run begins does not
+  // count.
+  std::int64_t sticking = 0;
+  // Numbers of the dampers with neither impact nor contact while others have impacts.
+  std::vector<std::size_t> idle;
+  // Whether several masses met rigid walls at one instant. The derivative is then that of changes
+  // that keep them together.
+  bool one_sided = false;
+  // How near the motion is to grazing, where the derivative by s has no bound (rigid walls) or jumps
+  // (compliant walls), and to a coincidence of impacts. Each is absent where the motion has no such event.
+  std::optional<double> slowest_impact;  // least speed; complete chattering counts with its first impact
+  std::optional<double> nearest_miss;    // least distance from a wall at which a mass turns back in flight
+  // Rigid walls, several dampers: the least time between two successive impacts of different dampers; the
+  // first follows the last, as on an orbit. Where they change their order the map jumps.
+  std::optional<double> least_interval;
+};
+
+struct VariationalCoefficients;
+
+// Largest number of dampers for which exponents and branches are computed: the time for a period grows with
+// the fourth power of their number, and takes seconds at this one.
+inline constexpr std::size_t most_dampers_with_changes = 100;
+
+// The map H^n of a scene, n = half_periods, and its derivatives.
+class PoincareMap {
+ public:
+  // half_periods: n >= 1. Throws InvalidArguments if n, the scene or the engine's options are not valid,
+  // there is no force, or the engine is cem. The scene's initial condition and its end are not used.
+  PoincareMap(const Scene& scene, const Engine& engine, int half_periods);
+
+  enum class Derivatives { by_state, by_state_and_parameters };
+  // The image of s, or the budget that ended the run before. s: the state at phase 0 of the force, with as
+  // many dampers as the scene has, which is not checked. With rigid walls a mass lies between them: y from 0
+  // to 1, or to its clearance.
+  Expected<PoincareImage, StopReason> operator()(const SceneState& s,
+                                                 Derivatives wanted = Derivatives::by_state) const;
+
+  const Scene& scene() const { return scene_; }  // with duration() as its end
+  const Engine& engine() const { return engine_; }
+  int half_periods() const { return half_periods_; }
+  double duration() const { return *scene_.until_time; }  // n pi / omega_f
+
+ private:
+  Scene scene_;
+  Engine engine_;
+  int half_periods_;
+  ForcedScene forced_;
+  std::shared_ptr<const VariationalCoefficients> coefficients_;
+};
+
+}  // namespace impact_damper
