@@ -1,10 +1,11 @@
 // Scenes in engineers' units, and how they are made dimensionless.
 //
 // Masses are in kg, lengths in mm, velocities in mm/s, times in s, stiffnesses in N/m, forces in N,
-// frequencies in Hz, energies in J. Three numbers fix all scales: the primary mass M, the stiffness K of its
-// spring and the clearance epsilon, the free travel of the secondary mass, with several dampers that of the
-// first. Lengths are made dimensionless by epsilon, times by sqrt(M/K) = 1/Omega_n, forces by K epsilon,
-// energies by K epsilon^2; masses by M and stiffnesses by K.
+// frequencies in Hz, energies in J, powers in W, dampings in N s/m, rates, which count no cycles, in 1/s.
+// Three numbers fix all scales: the primary mass M, the stiffness K of its spring and the clearance epsilon,
+// the free travel of the secondary mass, with several dampers that of the first. Lengths are made
+// dimensionless by epsilon, times by sqrt(M/K) = 1/Omega_n, forces by K epsilon, energies by K epsilon^2;
+// masses by M and stiffnesses by K.
 #pragma once
 
 #include <array>
@@ -19,7 +20,7 @@
 
 namespace impact_damper {
 
-// What a number measures; a ratio has no unit, like angles and all other numbers without one.
+// What a number measures. Counts and ratios have no unit; angles are listed as ratios.
 enum class Dimension {
   ratio,
   count,
@@ -47,8 +48,9 @@ struct Scales {
   double stiffness = 1;  // K, N/m
   double length = 1;     // epsilon, mm
 
-  // Return the size of a dimensionless unit, in engineers' units and in SI; 1 if there is none. Of
-  // frequencies it is Omega_n / (2 pi), that of omega_f = 1; of damping 2 sqrt(K M), critical damping.
+  // of() returns the size of one dimensionless unit in engineers' units, in_si() in SI; both return 1 for
+  // ratios and counts. Of frequencies it is Omega_n / (2 pi), that of omega_f = 1; of damping 2 sqrt(K M),
+  // critical damping.
   double of(Dimension dimension) const;
   double in_si(Dimension dimension) const;
 
@@ -81,7 +83,7 @@ struct SceneInUnits {
   std::optional<double> initial_displacement, initial_velocity;  // of the primary mass; mm, mm/s
   std::optional<double> exciting_force,
       exciting_frequency;  // amplitude, N, absent: 0; Hz, absent: Omega_n / (2 pi)
-  std::optional<double> until_seconds, until_millimetres;              // stops, s and mm; at least one
+  std::optional<double> until_seconds, until_millimetres;              // as in Scene; s, mm; at least one
   std::vector<DamperInUnits> dampers = std::vector<DamperInUnits>(1);  // 1 to most_dampers
 
   // The first damper, in a scene of one the only one.

@@ -25,8 +25,9 @@ class ContactMotion {
     Part slow, fast;
   };
 
-  // phase: of the force at the beginning. origin: the position of the wall on the axis of start.y. With y
-  // counted from the wall itself, origin = 0, y has all the digits of q.
+  // system: must outlive this object. begin: the time of the run from which all times below are counted.
+  // phase: of the force then. origin: the position of the wall on the axis of start.y, 0 for the left wall
+  // and 1 for the right one, or 0 for either if start.y is counted from the wall, with all digits of q.
   ContactMotion(const ContactModes<Real, Force>& system, const Real& begin, const SinCos<Real>& phase,
                 const State<Real>& start, Wall wall, const Real& origin)
       : system_(system),
@@ -66,8 +67,8 @@ class ContactMotion {
   }
   const ContactModes<Real, Force>& system() const { return system_; }
 
-  // Encloses inward_ q, the depth of the secondary mass in the wall, which falls through zero at the
-  // contact's end.
+  // Encloses inward() q, the depth of the secondary mass in the wall, from t until t + span. It falls through
+  // zero at the contact's end.
   LocalEnclosure<Real> depth(const Real& t, const Real& span) const {
     const ContactState<Real> slow = slow_at(t), fast = fast_at(t),
                              both = by_changes(t) ? sum_of_changes(t) : sum_of(slow, fast);
@@ -76,6 +77,7 @@ class ContactMotion {
     ahead.whole.g1 = inward_ * both.w;
     return ahead;
   }
+  // Encloses sign, 1 or -1, times the `order`-th derivative of x, 0 or 1, from t until t + span.
   LocalEnclosure<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t,
                                        const Real& span) const {
     const ContactState<Real> slow = slow_at(t), fast = fast_at(t),
@@ -98,6 +100,7 @@ class ContactMotion {
     return {start_.x, start_.v, x2, x3};
   }
 
+  // Returns q''' at the beginning of a contact with q = q' = 0 there.
   Real third_of_q_at_rest() const {
     const auto x = leads_of_x();
     return system_.damping * x[2] - x[3];
@@ -135,10 +138,12 @@ class ContactMotion {
       return last_.phase.emplace(system_.forcing.phase(begin_ + t));
     }
   }
+  // Returns the length of a quadrature panel that begins at t.
   Real panel(const Real& t) const {
     const Real slow = system_.slow.panel(t), fast = system_.fast.panel(t);
     return panel_under(system_.forcing, fast < slow ? fast : slow);
   }
+  // Returns the shortest time in which x changes.
   Real resolution() const { return system_.fast.rate() > 1 ? 1 / system_.fast.rate() : Real(1); }
   const State<Real>& start() const { return start_; }
   const Real& inward() const { return inward_; }  // -1 at the left wall, 1 at the right one
@@ -228,7 +233,8 @@ class ContactMotion {
     ContactState<Real> by{p.c1 * from.x + p.s1 * from.v, s1 * from.x + v1 * from.v,
                           p.c1 * from.q + p.s1 * from.w, s1 * from.q + v1 * from.w};
     if (system_.forcing) {
-      // (M5.10): the terms common to both parts, which would cancel, are left out of x and q.
+      // (M5.10): the terms common to both parts, which would cancel, are left out: the integral of f of x and
+      // q, and f of x' and q'.
       if (is_short && driven.integral) {
         add_driven(by, drive, driven, -oscillator.b() * *driven.integral, -oscillator.b() * driven.d);
       } else {

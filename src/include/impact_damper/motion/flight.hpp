@@ -41,7 +41,7 @@ struct FlightStart {
 // it.
 template <class Real, class Force = Forcing<Real>, class Clearance = UnitClearance<Real>,
           class Primary = ForcedMotion<Real, Force>>
-class Flight {
+class Flight : public WithoutContact<Flight<Real, Force, Clearance, Primary>, Real> {
  public:
   Flight(const System<Real, Force>& system, const Real& begin, const State<Real>& start)
       : Flight(system, begin, FlightStart<Real>(start)) {}
@@ -95,7 +95,7 @@ class Flight {
   std::optional<WallEvent<Real>> search_wall(const Real& from, const Real& horizon,
                                              Search<Real>& search) const {
     const auto met = first_root<Real>([&](const Real& t) { return gaps(t, search.span); }, from, horizon,
-                                      search, resolution());
+                                      search, this->resolution());
     if (!met) return {};
     const Wall wall = met->which == 0 ? Wall::left : Wall::right;
     const Place then = from_wall(met->time);
@@ -116,7 +116,7 @@ class Flight {
     };
     // A mass that begins at rest on a wall has y' = 0 there; rounding could show a second zero within `leap`.
     const Real leap = start_.w == 0 && u_ == 0 ? begin_by_lead_of_y(search.span) : Real(0);
-    return isolate_fall<Real>(enclose, from < leap ? leap : from, until, search, resolution());
+    return isolate_fall<Real>(enclose, from < leap ? leap : from, until, search, this->resolution());
   }
   // Encloses the two functions that fall through zero at an impact: the gap to the left wall, y, and the gap
   // to the right wall, both for a time `span` from t on.
@@ -142,28 +142,7 @@ class Flight {
   // A bound on |y''''| for a time `span` from the beginning on.
   Real fourth_of_y(const Real& span) const { return primary_.beginning().bound(4, span); }
 
-  bool keeps_side(const Real& side, const State<Real>& end, const Real& t) const {
-    return primary_.keeps_side(side, end.x, end.v, t);
-  }
-  bool keeps_course(const Real&, const State<Real>& end, const Real& t) const {
-    return primary_.keeps_course(end.v, t);
-  }
-  bool leaves_zero(const Real& from, const State<Real>& end, const Real& t) const {
-    return primary_.leaves_zero(from, end.v, t);
-  }
-  Real one_turn_within(const Real& t) const { return primary_.one_turn_within(t); }
-  std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
-                            Search<Real>& search) const {
-    return primary_.falls(order, sign, from, until, search);
-  }
-  Real height(const Real& t) const { return primary_.height(t); }
-  LocalEnclosure<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t,
-                                       const Real& span) const {
-    return primary_.enclosure_at(order, sign, t, span);
-  }
-  typename ForcedMotion<Real, Force>::Beginning leads_of_x() const { return primary_.beginning(); }
-  Real panel(const Real& t) const { return primary_.panel(t); }
-  Real resolution() const { return 1; }
+  const ForcedMotion<Real, Force>& primary() const { return primary_; }
 
  private:
   Real gap() const { return clearance_.gap(); }

@@ -11,6 +11,7 @@
 #include "impact_damper/events/root_of_series.hpp"
 #include "impact_damper/motion/driven_series.hpp"
 #include "impact_damper/motion/lead.hpp"
+#include "impact_damper/motion/state.hpp"
 #include "impact_damper/motion/system.hpp"
 
 namespace impact_damper {
@@ -324,6 +325,38 @@ class ForcedMotion {
     std::optional<Beginning> beginning{};
   };
   [[no_unique_address]] mutable std::conditional_t<forced, Cached, Nothing> cached_;
+};
+
+// What `MotionOf` (motion.hpp) asks for of x, of a Motion in which no wall pushes the primary mass, alone or
+// with masses that stick to it: its primary(), a ForcedMotion, has it.
+template <class Motion, class Real>
+class WithoutContact {
+ public:
+  bool keeps_side(const Real& side, const State<Real>& end, const Real& t) const {
+    return primary().keeps_side(side, end.x, end.v, t);
+  }
+  bool keeps_course(const Real&, const State<Real>& end, const Real& t) const {
+    return primary().keeps_course(end.v, t);
+  }
+  bool leaves_zero(const Real& from, const State<Real>& end, const Real& t) const {
+    return primary().leaves_zero(from, end.v, t);
+  }
+  Real one_turn_within(const Real& t) const { return primary().one_turn_within(t); }
+  std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
+                            Search<Real>& search) const {
+    return primary().falls(order, sign, from, until, search);
+  }
+  Real height(const Real& t) const { return primary().height(t); }
+  LocalEnclosure<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t,
+                                       const Real& span) const {
+    return primary().enclosure_at(order, sign, t, span);
+  }
+  auto leads_of_x() const { return primary().beginning(); }
+  Real panel(const Real& t) const { return primary().panel(t); }
+  Real resolution() const { return 1; }
+
+ private:
+  const auto& primary() const { return static_cast<const Motion&>(*this).primary(); }
 };
 
 }  // namespace impact_damper

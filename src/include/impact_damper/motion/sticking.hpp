@@ -10,7 +10,7 @@ namespace impact_damper {
 // The motion of the primary mass and the masses that stick to it. push: the direction in which the walls push
 // these, 1 on left walls, -1 on right ones; 0 if none sticks.
 template <class Real, class Force = Forcing<Real>>
-class JoinedMasses {
+class JoinedMasses : public WithoutContact<JoinedMasses<Real, Force>, Real> {
  public:
   // oscillator, force: those of all these masses together.
   JoinedMasses(const Driven<Real, Force>& oscillator, const Force& force, const Real& begin, const Real& x,
@@ -40,16 +40,6 @@ class JoinedMasses {
     if (released) turn_ = primary_.turn_before(*released);
     return released;
   }
-  bool keeps_side(const Real& side, const State<Real>& end, const Real& t) const {
-    return primary_.keeps_side(side, end.x, end.v, t);
-  }
-  bool keeps_course(const Real&, const State<Real>& end, const Real& t) const {
-    return primary_.keeps_course(end.v, t);
-  }
-  bool leaves_zero(const Real& from, const State<Real>& end, const Real& t) const {
-    return primary_.leaves_zero(from, end.v, t);
-  }
-  Real one_turn_within(const Real& t) const { return primary_.one_turn_within(t); }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             Search<Real>& search) const {
     // Until the release x'' has the sign of push_, so sign x' falls through zero only for sign = -push_, and
@@ -57,14 +47,6 @@ class JoinedMasses {
     if (order == 1 && turn_) return sign != push_ && *turn_ >= from && *turn_ < until ? turn_ : std::nullopt;
     return primary_.falls(order, sign, from, until, search);
   }
-  Real height(const Real& t) const { return primary_.height(t); }
-  LocalEnclosure<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t,
-                                       const Real& span) const {
-    return primary_.enclosure_at(order, sign, t, span);
-  }
-  typename ForcedMotion<Real, Force>::Beginning leads_of_x() const { return primary_.beginning(); }
-  Real panel(const Real& t) const { return primary_.panel(t); }
-  Real resolution() const { return 1; }
 
  protected:
   ForcedMotion<Real, Force> primary_;
