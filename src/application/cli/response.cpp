@@ -7,7 +7,7 @@
 
 #include "commands.hpp"
 #include "impact_damper/base/number_text.hpp"
-#include "impact_damper/orbits/variation_of_dampers.hpp"
+#include "impact_damper/orbits/variational_equations.hpp"
 #include "impact_damper/responses/response_file.hpp"
 #include "output.hpp"
 #include "progress.hpp"

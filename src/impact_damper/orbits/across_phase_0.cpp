@@ -6,7 +6,7 @@
 
 #include "impact_damper/engines/compatibility.hpp"
 #include "impact_damper/motion/wall.hpp"
-#include "impact_damper/orbits/variation_of_dampers.hpp"
+#include "impact_damper/orbits/variational_equations.hpp"
 
 namespace impact_damper {
 namespace {

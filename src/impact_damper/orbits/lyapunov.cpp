@@ -9,7 +9,7 @@
 #include "impact_damper/math/dense.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/orbits/poincare_map.hpp"
-#include "impact_damper/orbits/variation_of_dampers.hpp"
+#include "impact_damper/orbits/variational_equations.hpp"
 #include "impact_damper/steady/steady_state.hpp"
 
 namespace impact_damper {

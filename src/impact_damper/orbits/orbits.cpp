@@ -10,7 +10,7 @@
 #include "impact_damper/math/complex.hpp"
 #include "impact_damper/math/dense.hpp"
 #include "impact_damper/orbits/across_phase_0.hpp"
-#include "impact_damper/orbits/variation_of_dampers.hpp"
+#include "impact_damper/orbits/variational_equations.hpp"
 
 namespace impact_damper {
 namespace {
@@ -48,18 +48,20 @@ struct Equation {
   Parameter parameter;
   OrbitOptions options;
 
-  PoincareMap map(double value) const {
+  Scene scene_at(double value) const {
     Scene changed = scene;
     changed.*member_of(parameter) = value;
-    return {changed, engine, half_periods};
+    return changed;
   }
   // The idle dampers to which (M13.28) applies. For odd n there are none: the mirror determines their place.
   std::vector<std::size_t> free_to_rest(const PoincareImage& image) const {
     return half_periods % 2 == 0 ? image.idle : std::vector<std::size_t>{};
   }
-  Expected<PoincareImage, StopReason> image_of(
-      const Point& p, PoincareMap::Derivatives wanted = PoincareMap::Derivatives::by_state) const {
-    return map(p.back())(state_of(state_at(p)), wanted);
+  // Nearest misses are looked for on orbits only.
+  Expected<PoincareImage, StopReason> image_of(const Point& p, PoincareMap::Derivatives wanted) const {
+    const double misses_within = 2 * options.tolerance * std::max(1.0, largest(state_at(p)));
+    return PoincareMap(scene_at(p.back()), engine, half_periods)(state_of(state_at(p)), wanted,
+                                                                 misses_within);
   }
   // Whether a scene may have the iterate's parameter, and no component of its state exceeds 1e12.
   bool allows(const Point& p) const {
@@ -100,6 +102,7 @@ bool carry_across(const Equation& equation, const Point& before, Point& p, Plane
 struct Solution {
   Point point;
   PoincareImage image;
+  Multipliers multipliers;  // only of one that the corrector has found
   std::vector<double> residuals;
   Plane plane;
 };
@@ -125,6 +128,30 @@ Matrix bordered(const Equation& equation, const PoincareImage& image, const Poin
   }
   a.push_back(last);
   return a;
+}
+
+// Indices of the state's components without those of idle dampers, and A restricted to these. Idle dampers do
+// not act on the others, and each adds two multipliers that are 1, or -1 for odd n.
+std::vector<std::size_t> moving_in(const PoincareImage& image) {
+  std::vector<bool> is_idle(image.by_state.size(), false);
+  for (const std::size_t damper : image.idle)
+    is_idle[index_of_y(damper)] = is_idle[index_of_w(damper)] = true;
+  std::vector<std::size_t> all;
+  for (std::size_t i = 0; i < is_idle.size(); ++i)
+    if (!is_idle[i]) all.push_back(i);
+  return all;
+}
+Matrix derivative_of_moving(const PoincareImage& image) {
+  const std::vector<std::size_t> moving = moving_in(image);
+  Matrix all;
+  for (const std::size_t i : moving) {
+    all.emplace_back();
+    for (const std::size_t k : moving) all.back().push_back(image.by_state[i][k]);
+  }
+  return all;
+}
+Multipliers multipliers_of(const PoincareImage& image) {
+  return impact_damper::multipliers_of(derivative_of_moving(image));
 }
 
 // The residual of an iterate.
@@ -187,15 +214,17 @@ Solved solve(const Equation& equation, const Point& before, const Point& start, 
     }
     fraction = 1;
     least = residual.size;
-    best = now;
-    last = now.point;
-    const auto next = least > 0 ? newton_step(equation, now, residual) : std::nullopt;
+    std::swap(best, now);
+    last = best.point;
+    const auto next = least > 0 ? newton_step(equation, best, residual) : std::nullopt;
     if (!next) break;
-    step = along(*next, -1, now.point);
+    step = along(*next, -1, best.point);
     now.point = *next;
+    now.plane = best.plane;
   }
   if (!(least <= equation.options.tolerance)) return NoOrbit{OrbitEnd::no_convergence, std::move(residuals)};
   if (best.image.one_sided) return NoOrbit{OrbitEnd::no_derivative, std::move(residuals)};
+  best.multipliers = multipliers_of(best.image);
   best.residuals = std::move(residuals);
   return best;
 }
@@ -208,7 +237,7 @@ Plane at_value(const Point& p) { return {p, point_at(StateVector(p.size() - 1), 
 std::optional<StateVector> residual_after(const Equation& equation, const Point& p, int half_periods) {
   Equation shorter = equation;
   shorter.half_periods = half_periods;
-  const auto image = shorter.image_of(p);
+  const auto image = shorter.image_of(p, PoincareMap::Derivatives::none);
   if (!image) return {};
   StateVector residual = vector_of(image->state);
   for (std::size_t i = 0; i < residual.size(); ++i) residual[i] -= p[i];
@@ -224,30 +253,6 @@ bool closes_after(const Equation& equation, const Point& p, int half_periods, do
   return residual && largest(*residual) <= gap * std::max(1.0, largest(state_at(p)));
 }
 
-// Indices of the state's components without those of idle dampers, and A restricted to these. Idle dampers do
-// not act on the others, and each adds two multipliers that are 1, or -1 for odd n.
-std::vector<std::size_t> moving_in(const PoincareImage& image) {
-  std::vector<bool> is_idle(image.by_state.size(), false);
-  for (const std::size_t damper : image.idle)
-    is_idle[index_of_y(damper)] = is_idle[index_of_w(damper)] = true;
-  std::vector<std::size_t> all;
-  for (std::size_t i = 0; i < is_idle.size(); ++i)
-    if (!is_idle[i]) all.push_back(i);
-  return all;
-}
-Matrix derivative_of_moving(const PoincareImage& image) {
-  const std::vector<std::size_t> moving = moving_in(image);
-  Matrix all;
-  for (const std::size_t i : moving) {
-    all.emplace_back();
-    for (const std::size_t k : moving) all.back().push_back(image.by_state[i][k]);
-  }
-  return all;
-}
-Multipliers multipliers_of(const PoincareImage& image) {
-  return impact_damper::multipliers_of(derivative_of_moving(image));
-}
-
 // The orbit of a solution. Of a symmetric one the solution is half, and its mirror image the other half.
 Orbit orbit_of(const Equation& equation, const Solution& found, int periods, bool symmetric) {
   Orbit orbit;
@@ -255,23 +260,22 @@ Orbit orbit_of(const Equation& equation, const Solution& found, int periods, boo
   orbit.engine = equation.engine;
   orbit.periods = periods;
   orbit.symmetric = symmetric;
-  const PoincareMap map = equation.map(found.point.back());
-  orbit.scene = map.scene();
-  orbit.scene = released_from(orbit.scene, state_of(state_at(found.point)));
+  const Scene scene = scene_of_map(equation.scene_at(found.point.back()), equation.half_periods);
+  const double duration = *scene.until_time;
+  orbit.scene = released_from(scene, state_of(state_at(found.point)));
   orbit.impacts = found.image.impacts;
   orbit.sticking = found.image.sticking;
   orbit.idle = found.image.idle;
-  orbit.multipliers = multipliers_of(found.image);
+  orbit.multipliers = found.multipliers;
   orbit.slowest_impact = found.image.slowest_impact;
   orbit.nearest_miss = found.image.nearest_miss;
   orbit.least_interval = found.image.least_interval;
   if (!symmetric) return orbit;
 
-  orbit.scene.until_time = 2 * map.duration();
+  orbit.scene.until_time = 2 * duration;
   for (const OrbitImpact& impact : found.image.impacts)
-    orbit.impacts.push_back({impact.time + map.duration(),
-                             impact.wall == Wall::left ? Wall::right : Wall::left, impact.speed,
-                             impact.damper});
+    orbit.impacts.push_back({impact.time + duration, impact.wall == Wall::left ? Wall::right : Wall::left,
+                             impact.speed, impact.damper});
   orbit.sticking *= 2;
   orbit.half_multipliers = orbit.multipliers;
   for (Multiplier& m : orbit.multipliers) m = {(m.re - m.im) * (m.re + m.im), 2 * m.re * m.im + 0.0};
@@ -319,8 +323,7 @@ std::vector<Problem> problems_of(const OrbitOptions& options) {
 struct Products {
   double fold, flip, pairs;
 };
-Products products_of(const PoincareImage& image) {
-  const Multipliers all = multipliers_of(image);
+Products products_of(const Multipliers& all) {
   const auto complex = [](const Multiplier& m) { return Complex<double>(m.re, m.im); };
   const Complex<double> one(1);
   Complex<double> fold = one, flip = one, pairs = one;
@@ -438,7 +441,7 @@ class Follower {
   // change their signs together. Across a junction they do not, but there the branch ends.
   bool jumped(const Solution& now, double share, const Solution& next, double next_share) const {
     if (now.image.impacts.empty() || crosses(now, next)) return false;
-    return products_of(now.image).fold * share * products_of(next.image).fold * next_share < 0;
+    return products_of(now.multipliers).fold * share * products_of(next.multipliers).fold * next_share < 0;
   }
   // The unit tangent of the branch (M13.11) on the side to which `like` points.
   std::optional<Point> tangent_at(const Solution& at, const Point& like) const {
@@ -483,11 +486,11 @@ class Follower {
       return direction ? (*direction).back() : 0;
     };
     add_event(branch, now, tangent, step, BranchEventKind::fold, tangent.back(), slope(next), slope);
-    const auto flip = [](const Solution& at) { return products_of(at.image).flip; };
+    const auto flip = [](const Solution& at) { return products_of(at.multipliers).flip; };
     add_event(branch, now, tangent, step,
               first_.symmetric ? BranchEventKind::symmetry_breaking : BranchEventKind::flip, flip(now),
               flip(next), flip);
-    const auto pairs = [](const Solution& at) { return products_of(at.image).pairs; };
+    const auto pairs = [](const Solution& at) { return products_of(at.multipliers).pairs; };
     add_event(branch, now, tangent, step, BranchEventKind::neimark_sacker, pairs(now), pairs(next), pairs);
   }
   // The bifurcation point at which this branch, of H^(2n), joins that of H^n from which it branches off.
@@ -509,16 +512,18 @@ class Follower {
            at = at_parameter_value(middle, middle.back());
     for (int i = 0; i < 20; ++i) {
       if (!at || !other) return {};
-      const double value = products_of(at->image).flip, change = value - products_of(other->image).flip;
+      const double value = products_of(at->multipliers).flip,
+                   change = value - products_of(other->multipliers).flip;
       const double by = value * (at->point.back() - other->point.back()) / change;
       if (!std::isfinite(by)) break;
       other = std::exchange(at, at_parameter_value(at->point, at->point.back() - by));
       if (at && std::fabs(by) <= 1e-14 * at->point.back()) break;
     }
-    if (!at || !(distance(at->point, middle) < step) || !is_flip(at->image)) return {};
+    if (!at || !(distance(at->point, middle) < step) || !is_flip(at->multipliers)) return {};
     auto image = equation_.image_of(at->point, PoincareMap::Derivatives::by_state_and_parameters);
     if (!image) return {};
     at->image = *std::move(image);
+    at->multipliers = multipliers_of(at->image);
     return *std::move(at);
   }
   // Whether H^n(s) - s reverses between two orbits of H^(2n): its scalar product is negative.
@@ -529,8 +534,7 @@ class Follower {
     if (!before || !after) return false;
     return dot_product(*before, *after) < 0;
   }
-  static bool is_flip(const PoincareImage& image) {
-    const Multipliers all = multipliers_of(image);
+  static bool is_flip(const Multipliers& all) {
     return std::any_of(all.begin(), all.end(), [](const Multiplier& m) {
       return std::fabs(m.re + 1) < 1e-6 && std::fabs(m.im) < 1e-6;
     });
@@ -543,12 +547,11 @@ class Follower {
     if (!(before * after < 0)) return;
     const auto at = root_between(now, tangent, step, before, after, test);
     if (!at || !in_range(at->point)) return;
-    if (kind == BranchEventKind::neimark_sacker && !on_unit_circle(at->image)) return;
+    if (kind == BranchEventKind::neimark_sacker && !on_unit_circle(at->multipliers)) return;
     branch.events.push_back({kind, at->point.back(), orbit_at(*at), std::ssize(branch.orbits)});
   }
   // Whether two conjugate multipliers have modulus 1. The product of two real ones can be 1 as well.
-  static bool on_unit_circle(const PoincareImage& image) {
-    const Multipliers all = multipliers_of(image);
+  static bool on_unit_circle(const Multipliers& all) {
     return std::any_of(all.begin(), all.end(),
                        [](const Multiplier& m) { return m.im > 1e-6 && std::fabs(m.modulus() - 1) < 1e-6; });
   }
@@ -760,7 +763,7 @@ Expected<Orbit, NoOrbit> branching_off(const BranchEvent& event, Parameter param
   const Equation equation{from.scene, from.engine, 2 * half_periods, parameter, options};
   const Point origin = point_at(vector_of(release_of(from.scene)), event.parameter);
   const auto image =
-      PoincareMap(equation.map(event.parameter).scene(), from.engine, half_periods)(release_of(from.scene));
+      PoincareMap(equation.scene_at(event.parameter), from.engine, half_periods)(release_of(from.scene));
   if (!image) return NoOrbit{OrbitEnd::run_stopped};
   const std::optional<StateVector> direction = eigenvector_of_minus_1(*image);
   if (!direction) return NoOrbit{};

@@ -7,7 +7,8 @@
 
 #include "impact_damper/engines/compatibility.hpp"
 #include "impact_damper/motion/wall.hpp"
-#include "impact_damper/orbits/variation_of_dampers.hpp"
+#include "impact_damper/orbits/nearest_miss.hpp"
+#include "impact_damper/orbits/variational_equations.hpp"
 
 namespace impact_damper {
 namespace {
@@ -43,6 +44,15 @@ std::optional<double> least_interval(const std::vector<OrbitImpact>& impacts, do
   return least;
 }
 
+// The largest modulus of a component of a - b.
+double largest_departure(const SceneState& a, const SceneState& b) {
+  double most = std::max(std::fabs(a.x - b.x), std::fabs(a.v - b.v));
+  for (std::size_t i = 0; i < a.dampers.size(); ++i)
+    most = std::max(
+        {most, std::fabs(a.dampers[i].y - b.dampers[i].y), std::fabs(a.dampers[i].w - b.dampers[i].w)});
+  return most;
+}
+
 }  // namespace
 
 StateVector vector_of(const SceneState& s) {
@@ -58,20 +68,14 @@ SceneState state_of(const StateVector& s) {
   return state;
 }
 
-namespace {
-
-// The scene with the end of H^n, n = half_periods, and with any initial condition.
 Scene scene_of_map(Scene scene, int half_periods) {
   if (!(half_periods >= 1)) require_none({{"periods", "must be >= 1"}});
   scene.x0 = scene.v0 = 0;
   for (SceneDamper& damper : scene.dampers) damper.y0 = damper.clearance / 2, damper.w0 = 0;
   scene.until_amplitude.reset();
   scene.until_time = half_periods * (half_turn<double>() / scene.force_frequency);
-  require_none(problems_of(scene));
   return scene;
 }
-
-}  // namespace
 
 PoincareMap::PoincareMap(const Scene& scene, const Engine& engine, int half_periods)
     : scene_(scene_of_map(scene, half_periods)),
@@ -80,45 +84,49 @@ PoincareMap::PoincareMap(const Scene& scene, const Engine& engine, int half_peri
       forced_(scene_, engine_),
       coefficients_(variational_coefficients(scene_, engine_)) {}
 
-Expected<PoincareImage, StopReason> PoincareMap::operator()(const SceneState& s, Derivatives wanted) const {
+Expected<PoincareImage, StopReason> PoincareMap::operator()(const SceneState& s, Derivatives wanted,
+                                                            double misses_within) const {
   const RecordedRun run = forced_.record(s, duration());
   if (run.stop_reason != StopReason::time) return run.stop_reason;
-  const bool with_parameters = wanted == Derivatives::by_state_and_parameters;
-  const std::size_t n = dimensions_of(scene_);
-  std::vector<ChangeOfState> columns = identity_of(n);
-  AlongRun along;
-  const Carried carried = carry_changes(*coefficients_, run, columns, {}, with_parameters ? &along : nullptr);
-
   const double mirror = half_periods_ % 2 == 0 ? 1 : -1;
   PoincareImage image;
   image.state = mirror < 0 ? mirrored(run.end, scene_) : run.end;
+  std::vector<bool> is_idle(scene_.dampers.size(), !run.chain.impacts.empty());
+  for (const MotionChain::Impact& each : run.chain.impacts) is_idle[std::size_t(each.damper)] = false;
+  for (const MotionChain::Contact& each : run.chain.contacts) is_idle[std::size_t(each.damper)] = false;
+  for (std::size_t i = 0; i < is_idle.size(); ++i)
+    if (is_idle[i]) image.idle.push_back(i);
+  if (wanted == Derivatives::none) return image;
+
+  const std::size_t n = dimensions_of(scene_);
+  std::vector<ChangeOfState> columns = identity_of(n);
+  AlongRun along;
+  const Carried carried = carry_changes(*coefficients_, run, columns, {},
+                                        wanted == Derivatives::by_state_and_parameters ? &along : nullptr);
   image.by_state.assign(n, StateVector(n));
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j) image.by_state[i][j] = mirror * columns[j][i];
+  image.by_frequency = std::move(along.by_frequency);
+  image.by_amplitude = std::move(along.by_amplitude);
   // The end time n pi / omega_f depends on omega_f (M13.8).
-  for (std::size_t i = 0; i < along.by_frequency.size(); ++i) {
-    along.by_frequency[i] -= along.rates_at_end[i] * (duration() / scene_.force_frequency);
-    image.by_frequency.push_back(mirror * along.by_frequency[i]);
-    image.by_amplitude.push_back(mirror * along.by_amplitude[i]);
+  for (std::size_t i = 0; i < image.by_frequency.size(); ++i) {
+    const double by_end = along.rates_at_end[i] * (duration() / scene_.force_frequency);
+    image.by_frequency[i] = mirror * (image.by_frequency[i] - by_end);
+    image.by_amplitude[i] *= mirror;
   }
-  image.nearest_miss = carried.nearest_miss;
   image.one_sided = carried.one_sided;
-
-  std::vector<bool> is_idle(scene_.dampers.size(), !run.chain.impacts.empty());
-  for (const MotionChain::Impact& each : run.chain.impacts) {
+  if (largest_departure(image.state, s) <= misses_within)
+    image.nearest_miss = nearest_miss(*coefficients_, run);
+  image.impacts.reserve(run.chain.impacts.size());
+  for (const MotionChain::Impact& each : run.chain.impacts)
     image.impacts.push_back({each.time, each.wall, std::fabs(each.w), each.damper});
-    is_idle[std::size_t(each.damper)] = false;
+  if (!has_rigid_walls(engine_)) {
+    image.slowest_impact = slowest(image.impacts, {});
+    return image;
   }
-  const bool rigid = has_rigid_walls(engine_);
-  const std::vector<ContactInterval> contacts = contact_intervals(scene_, run, rigid);
-  for (const ContactInterval& each : contacts) {
-    is_idle[each.damper] = false;
-    image.sticking += rigid && !each.from_beginning;
-  }
-  for (std::size_t i = 0; i < is_idle.size(); ++i)
-    if (is_idle[i]) image.idle.push_back(i);
-  image.slowest_impact = slowest(image.impacts, rigid ? contacts : std::vector<ContactInterval>{});
-  if (rigid) image.least_interval = least_interval(image.impacts, duration());
+  image.sticking = std::ranges::count(carried.contacts, false, &ContactInterval::from_beginning);
+  image.slowest_impact = slowest(image.impacts, carried.contacts);
+  image.least_interval = least_interval(image.impacts, duration());
   return image;
 }
 

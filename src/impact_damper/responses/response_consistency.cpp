@@ -3,7 +3,7 @@
 
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/math/elementary.hpp"
-#include "impact_damper/orbits/variation_of_dampers.hpp"
+#include "impact_damper/orbits/variational_equations.hpp"
 #include "impact_damper/responses/response_file.hpp"
 
 namespace impact_damper {

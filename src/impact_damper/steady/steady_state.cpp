@@ -227,7 +227,7 @@ RecordedRun ForcedScene::record(const SceneState& state, double until) const {
   RecordedRun all;
   Record record;
   record.half_cycles = false;
-  record.history = {{0, until, 2}};
+  record.history = {{until, until, 1}};
   Recorder recorder(std::move(record), scene_.dampers.size(), &all.chain);
   const Outcome outcome = run_(from, recorder);
   all.stop_reason = outcome.stop_reason;
@@ -236,7 +236,7 @@ RecordedRun ForcedScene::record(const SceneState& state, double until) const {
   if (all.stop_reason != StopReason::time) return all;
   Run run;
   recorder.finish(run);
-  all.end = state_in(*run.history, 1);
+  all.end = state_in(*run.history, 0);
   return all;
 }
 

@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -60,6 +61,10 @@ struct VariationalCoefficients;
 // the fourth power of their number, and takes seconds at this one.
 inline constexpr std::size_t most_dampers_with_changes = 100;
 
+// The scene with the end of H^n, n = half_periods, and at rest, as its initial condition is not used. Throws
+// InvalidArguments if n < 1.
+Scene scene_of_map(Scene scene, int half_periods);
+
 // The map H^n of a scene, n = half_periods, and its derivatives.
 class PoincareMap {
  public:
@@ -67,12 +72,15 @@ class PoincareMap {
   // there is no force, or the engine is cem. The scene's initial condition and its end are not used.
   PoincareMap(const Scene& scene, const Engine& engine, int half_periods);
 
-  enum class Derivatives { by_state, by_state_and_parameters };
+  // With none, an image has its state and its idle dampers only.
+  enum class Derivatives { none, by_state, by_state_and_parameters };
   // The image of s, or the budget that ended the run before. s: the state at phase 0 of the force, with as
   // many dampers as the scene has, which is not checked. With rigid walls a mass lies between them: y from 0
   // to 1, or to its clearance.
-  Expected<PoincareImage, StopReason> operator()(const SceneState& s,
-                                                 Derivatives wanted = Derivatives::by_state) const;
+  // misses_within: the nearest miss is looked for only where no component of H^n(s) - s exceeds it.
+  Expected<PoincareImage, StopReason> operator()(
+      const SceneState& s, Derivatives wanted = Derivatives::by_state,
+      double misses_within = std::numeric_limits<double>::infinity()) const;
 
   const Scene& scene() const { return scene_; }  // with duration() as its end
   const Engine& engine() const { return engine_; }

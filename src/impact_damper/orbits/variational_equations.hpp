@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "impact_damper/run.hpp"
@@ -29,21 +28,15 @@ struct ContactInterval {
   std::size_t impacts_before;  // of all dampers, in the chain
   bool from_beginning;         // no event of this run began it
 };
-// All of a run, with those that end with it, in the order of `first`. A mass whose chattering is complete
-// sticks from the impact at which the limit is taken. scene: that of the run, but for initial condition and
-// end.
-std::vector<ContactInterval> contact_intervals(const Scene& scene, const RecordedRun& run, bool rigid);
 
 struct Carried {
+  std::vector<ContactInterval> contacts;  // of the run, with those that end with it, in the order of `first`
   // Largest number of dimensions lost at one time: two for each mass that sticks, or whose contact is damped
   // by more than exp(-36) 4096 times.
   std::size_t lost = 0;
   // Whether several masses met rigid walls at one instant. The derivative is then that of changes that keep
   // them together.
   bool one_sided = false;
-  // The least distance from a wall at which a mass turns back in flight; absent if none does, and where
-  // after_step() is given.
-  std::optional<double> nearest_miss;
 };
 // The derivatives of the final state by omega_f and by f0, and its rates.
 struct AlongRun {

@@ -1,0 +1,140 @@
+#include "impact_damper/orbits/nearest_miss.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "impact_damper/motion/flight.hpp"
+#include "impact_damper/motion/joint_contact.hpp"
+#include "impact_damper/orbits/masses_along_run.hpp"
+
+namespace impact_damper {
+namespace {
+
+using ForcedOscillator = Driven<double, Forcing<double>>;
+
+class NearestMiss {
+ public:
+  NearestMiss(const VariationalCoefficients& of, const RecordedRun& run)
+      : of_(of), run_(run), now_(of, run), free_(of.zeta, 1, of.force) {}
+
+  std::optional<double> find() {
+    for (std::size_t n = 0; n < run_.chain.motions.size(); ++n) {
+      const MotionChain::Motion& motion = run_.chain.motions[n];
+      if (of_.rigid) {
+        if (now_.comes_to_rigid_event(n)) now_.pass_rigid_event(n);
+        pass_masses(motion, now_.joined_mass());
+      } else {
+        now_.come_to_compliant_events(n);
+        now_.pass_compliant_events(n);
+        if (now_.in_contact.empty()) {
+          pass_masses(motion, 1);
+        } else if (now_.masses.size() > 1) {
+          pass_masses_beside_contacts(motion);
+        }
+      }
+      now_.pass(motion);
+    }
+    return nearest_;
+  }
+
+ private:
+  // Follows y and y' of the masses that fly, `joined_mass` being that of the primary mass and all that
+  // sticks, and updates the nearest miss.
+  void pass_masses(const MotionChain::Motion& motion, double joined_mass) {
+    if (now_.in_contact.size() == now_.masses.size()) return;
+    const Forcing<double> force{of_.force.amplitude / joined_mass, of_.force.frequency};
+    std::optional<ForcedOscillator> joined;
+    if (joined_mass != 1) joined.emplace(of_.zeta / joined_mass, 1 / joined_mass, of_.force);
+    const ForcedMotion<double> primary(joined ? *joined : free_, force, motion.begin, now_.x, now_.v);
+    starts_.resize(now_.masses.size(), FlightStart<double>(State<double>{}));
+    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
+      MassesAlongRun::Mass& mass = now_.masses[i];
+      if (mass.wall != 0) continue;
+      const double clearance = of_.dampers[i].clearance;
+      FlightStart<double>& start = starts_[i];
+      if (!now_.continued) {
+        const bool left = mass.y <= clearance / 2;
+        start = {{now_.x, now_.v, mass.y, mass.w},
+                 left ? 0 : clearance,
+                 left ? 1.0 : -1.0,
+                 left ? mass.y : clearance - mass.y};
+      }
+      const Flight<double, Forcing<double>, OwnClearance<double>, const ForcedMotion<double>&> flight(
+          primary, {clearance}, start);
+      look_for_misses(
+          i, [&](double sign, double from) { return flight.turn_of_y(sign, from, motion.duration, search_); },
+          [&](double time) { return flight.at(time).y; });
+      start = flight.start_of_rest(motion.duration);
+      mass.y = start.state.y;
+      mass.w = start.state.w;
+    }
+  }
+  // The same while some masses push compliant walls, which are followed, too.
+  void pass_masses_beside_contacts(const MotionChain::Motion& motion) {
+    std::vector<PushedWall<double>> walls;
+    for (const std::size_t i : now_.in_contact)
+      walls.push_back({of_.dampers[i].nu, of_.dampers[i].stiffness, of_.dampers[i].damping,
+                       now_.masses[i].y - now_.position_of_wall(i), now_.masses[i].w});
+    joint_.set_walls(of_.zeta, of_.force, walls);
+    double x = now_.x, v = now_.v;
+    for (double passed = 0; passed < motion.duration;) {
+      joint_.begin(motion.begin + passed, x, v, walls);
+      const double left = motion.duration - passed, until = std::min(joint_.length(), left);
+      const auto end = joint_.change(until);
+      for (std::size_t i = 0; i < now_.masses.size(); ++i) {
+        MassesAlongRun::Mass& mass = now_.masses[i];
+        if (mass.wall != 0) continue;
+        look_for_misses(
+            i,
+            [&](double sign, double from) {
+              return joint_.fall(joint_.relative_velocity(mass.w, sign), from, until, search_);
+            },
+            [&](double time) { return mass.y + (mass.w * time - joint_.change(time).dx); });
+        mass.y += mass.w * until - end.dx;
+        mass.w -= end.dv;
+      }
+      for (std::size_t k = 0; k < walls.size(); ++k) {
+        const auto [q, w] = joint_.overlap(k, until);
+        walls[k].q = q, walls[k].w = w;
+      }
+      x = end.x, v = end.v;
+      passed = until < left ? passed + until : motion.duration;
+    }
+    for (std::size_t k = 0; k < walls.size(); ++k) {
+      const std::size_t i = now_.in_contact[k];
+      now_.masses[i].y = now_.position_of_wall(i) + walls[k].q;
+      now_.masses[i].w = walls[k].w;
+    }
+  }
+  // Updates the nearest miss of the i-th mass in a piece of its flight that begins now. next(sign, from): the
+  // first time from `from` on at which sign times y' falls through zero; position(time): y.
+  template <class Next, class Position>
+  void look_for_misses(std::size_t i, Next&& next, Position&& position) {
+    const double clearance = of_.dampers[i].clearance;
+    const MassesAlongRun::Mass& mass = now_.masses[i];
+    double sign = mass.y == 0 ? 1 : mass.y == clearance ? -1 : mass.w >= 0 ? 1 : -1, from = 0;
+    while (const std::optional<double> time = next(sign, from)) {
+      const double y = position(*time), gap = sign > 0 ? clearance - y : y;
+      if (!(nearest_ && *nearest_ <= gap)) nearest_ = gap;
+      sign = -sign;
+      from = *time;
+    }
+  }
+
+  const VariationalCoefficients& of_;
+  const RecordedRun& run_;
+  MassesAlongRun now_;
+  ForcedOscillator free_;
+  std::vector<FlightStart<double>> starts_;
+  JointContact<double, Forcing<double>> joint_;
+  Search<double> search_{2};
+  std::optional<double> nearest_;
+};
+
+}  // namespace
+
+std::optional<double> nearest_miss(const VariationalCoefficients& of, const RecordedRun& run) {
+  return NearestMiss(of, run).find();
+}
+
+}  // namespace impact_damper

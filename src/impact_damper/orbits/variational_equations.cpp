@@ -1,0 +1,489 @@
+#include "impact_damper/orbits/variational_equations.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+#include <variant>
+
+#include "impact_damper/engines/compatibility.hpp"
+#include "impact_damper/math/dense.hpp"
+#include "impact_damper/motion/contact.hpp"
+#include "impact_damper/motion/contact_without_modes.hpp"
+#include "impact_damper/motion/energy.hpp"
+#include "impact_damper/motion/forced_motion.hpp"
+#include "impact_damper/motion/wall.hpp"
+#include "impact_damper/orbits/masses_along_run.hpp"
+
+namespace impact_damper {
+namespace {
+
+using Unforced = NoForcing<double>;
+using OfDamper = VariationalCoefficients::OfDamper;
+
+// The changes that are carried along a run: by address, as after_step() may replace them.
+using Changes = std::vector<ChangeOfState*>;
+Changes changes_of(std::vector<ChangeOfState>& changes, AlongRun* along) {
+  Changes all;
+  for (ChangeOfState& each : changes) all.push_back(&each);
+  if (along) {
+    all.push_back(&along->by_frequency);
+    all.push_back(&along->by_amplitude);
+  }
+  return all;
+}
+
+// The number of pieces for a motion that contracts volumes by exp(-loss): each contracts by e at most, so
+// that orthogonalisation between them keeps the digits of all directions, unless there would be more than
+// most_pieces.
+constexpr int most_pieces = 4096;
+int pieces_of(double loss) { return loss < most_pieces ? 1 + int(loss) : most_pieces; }
+// Whether even most_pieces pieces contract by more than exp(-36) each, a rounding error: directions are lost.
+bool is_lost(double loss) { return loss > 36.0 * most_pieces; }
+
+// The propagator of changes while several masses push their compliant walls (M13.27).
+class JointPropagator {
+ public:
+  // in_contact: indices of these masses. with_force: for changes of the force, too.
+  JointPropagator(const VariationalCoefficients& of, std::span<const std::size_t> in_contact, double duration,
+                  bool with_force)
+      : in_contact_(in_contact) {
+    const std::size_t n = 2 + 2 * in_contact.size() + (with_force ? 4 : 0);
+    double rate = with_force ? of.force.frequency : 0, all_k = 0, most_k = 0;
+    for (const std::size_t i : in_contact) {
+      const OfDamper& each = of.dampers[i];
+      all_k += each.nu * each.stiffness;
+      most_k = std::max(most_k, each.stiffness);
+      rate += (1 + each.nu) * each.damping;
+    }
+    rate += 2 * of.zeta + std::sqrt(1 + all_k + most_k);
+    matrix_ =
+        matrix_exponential(n, duration, rate, [&](const Vector& s, Vector& rates) { derive(of, s, rates); });
+  }
+
+  // (g, h, a, b) of (M13.27) at a time: g is the change of the force by f0 (harmonic) or by omega_f
+  // (secular), and the other three make its equations linear.
+  static std::array<double, 4> harmonic(const Forcing<double>& force, double time) {
+    const auto [sin, cos] = force.phase(time);
+    return {sin, cos, 0, 0};
+  }
+  static std::array<double, 4> secular(const Forcing<double>& force, double time) {
+    const auto [sin, cos] = force.phase(time);
+    return {force.amplitude * time * cos, -force.amplitude * time * sin, force.amplitude * cos,
+            -force.amplitude * sin};
+  }
+
+  // Carries x, x', and y and y' of the masses in contact. `force`: (g, h, a, b) at the beginning.
+  void carry(ChangeOfState& s, const std::array<double, 4>& force) const {
+    Vector from(matrix_.size());
+    from[0] = s[0], from[1] = s[1];
+    const std::size_t n = 2 + 2 * in_contact_.size();
+    for (std::size_t k = 0; k < in_contact_.size(); ++k) {
+      from[2 + 2 * k] = s[index_of_y(in_contact_[k])];
+      from[3 + 2 * k] = s[index_of_w(in_contact_[k])];
+    }
+    if (from.size() > n) std::copy(force.begin(), force.end(), from.begin() + std::ptrdiff_t(n));
+    const Vector to = product(matrix_, from);
+    s[0] = to[0], s[1] = to[1];
+    for (std::size_t k = 0; k < in_contact_.size(); ++k) {
+      s[index_of_y(in_contact_[k])] = to[2 + 2 * k];
+      s[index_of_w(in_contact_[k])] = to[3 + 2 * k];
+    }
+  }
+
+ private:
+  // The right-hand sides of the variational equations (M13.27).
+  void derive(const VariationalCoefficients& of, const Vector& s, Vector& rates) const {
+    const std::size_t n = 2 + 2 * in_contact_.size();
+    double a = -2 * of.zeta * s[1] - s[0];
+    if (s.size() > n) a += s[n];
+    for (std::size_t k = 0; k < in_contact_.size(); ++k) {
+      const OfDamper& each = of.dampers[in_contact_[k]];
+      const double push = each.damping * s[3 + 2 * k] + each.stiffness * s[2 + 2 * k];
+      a += each.nu * push;
+      rates[2 + 2 * k] = s[3 + 2 * k];
+      rates[3 + 2 * k] = -push;
+    }
+    rates[0] = s[1], rates[1] = a;
+    for (std::size_t k = 0; k < in_contact_.size(); ++k) rates[3 + 2 * k] -= a;
+    if (s.size() == n) return;
+    const double omega = of.force.frequency, *g = s.data() + n;
+    rates[n] = omega * g[1] + g[2];
+    rates[n + 1] = -omega * g[0] + g[3];
+    rates[n + 2] = omega * g[3];
+    rates[n + 3] = -omega * g[2];
+  }
+
+  std::span<const std::size_t> in_contact_;
+  // Rows and columns of x, x', q and q' of each mass in contact, and (g, h, a, b) of (M13.27).
+  Matrix matrix_;
+};
+
+// Carries changes along one run, motion by motion.
+class VariationalEquations {
+ public:
+  VariationalEquations(const VariationalCoefficients& of, const RecordedRun& run, AlongRun* along,
+                       const Changes& changes, const std::function<void()>& after_step)
+      : of_(of),
+        run_(run),
+        along_(along),
+        changes_(changes),
+        after_step_(after_step),
+        now_(of, run),
+        event_(of.dampers.size()) {}
+
+  Carried carry() {
+    for (std::size_t n = 0; n < run_.chain.motions.size(); ++n) {
+      if (of_.rigid) {
+        pass_rigid_event(n);
+      } else {
+        pass_compliant_events(n);
+      }
+      const MotionChain::Motion& motion = run_.chain.motions[n];
+      if (of_.rigid) all_.lost = std::max(all_.lost, 2 * now_.in_contact.size());
+      if (of_.rigid || now_.in_contact.empty()) {
+        pass_flight(motion);
+      } else if (now_.in_contact.size() > 1) {
+        pass_joint_contact(motion);
+      } else if (const UnforcedModes& modes = *of_.dampers[now_.in_contact.front()].modes; modes.coupled) {
+        pass_contact<ContactWithoutModes<double, Unforced>>(modes, motion);
+      } else {
+        pass_contact<Contact<double, Unforced>>(modes, motion);
+      }
+      now_.pass(motion);
+    }
+    if (along_) {
+      now_.x = run_.end.x, now_.v = run_.end.v;
+      for (std::size_t i = 0; i < now_.masses.size(); ++i)
+        now_.masses[i].y = run_.end.dampers[i].y, now_.masses[i].w = run_.end.dampers[i].w;
+      rates(run_.end_time, along_->rates_at_end);
+    }
+    all_.contacts = std::move(now_.contacts);
+    return std::move(all_);
+  }
+
+ private:
+  // The rates of the state: x', x'', then y' and y'' of each damper.
+  void rates(double time, ChangeOfState& all) const {
+    double a = of_.force.amplitude * of_.force.phase(time).sin - 2 * of_.zeta * now_.v - now_.x;
+    all.resize(of_.dimensions());
+    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
+      const bool free = now_.masses[i].wall == 0;
+      all[index_of_y(i)] = free || !of_.rigid ? now_.masses[i].w : 0;
+      all[index_of_w(i)] = 0;
+      if (free || of_.rigid) continue;
+      const OfDamper& its = of_.dampers[i];
+      const double push =
+          its.damping * now_.masses[i].w + its.stiffness * (now_.masses[i].y - now_.position_of_wall(i));
+      a += its.nu * push;
+      all[index_of_w(i)] = -push;
+    }
+    if (of_.rigid) a /= now_.joined_mass();
+    all[0] = now_.v, all[1] = a;
+    for (std::size_t i = 0; i < now_.masses.size(); ++i)
+      if (now_.masses[i].wall == 0 || !of_.rigid) all[index_of_w(i)] -= a;
+  }
+  // carry(s, piece): carries a change through an event, or a piece of a motion.
+  template <class Carry>
+  void carry_all(int pieces, Carry&& carry) {
+    for (int piece = 0; piece < pieces; ++piece) {
+      for (ChangeOfState* const each : changes_) carry(*each, piece);
+      if (after_step_) after_step_();
+    }
+  }
+
+  // What an event at rigid walls does to one mass.
+  struct EventOfMass {
+    double gain, share, of_w;  // x' gains gain y' by its impulse, share y' by its joining, of_w y' in all
+    std::vector<double> saltation = {};  // meets: (F^+ - D F^-)/(n F^-) of (M13.4)
+  };
+  // Applies the event between the motion n and the one before, if there is one: to the changes its saltation
+  // matrix (M13.4), to the state its jump.
+  void pass_rigid_event(std::size_t n) {
+    if (!now_.comes_to_rigid_event(n)) return;
+    const double time = run_.chain.motions[n].begin;
+    rates(time, rates_before_);
+    now_.pass_rigid_event(n);
+    rates(time, rates_after_);
+    find_shares();
+    all_.one_sided = all_.one_sided || now_.impacts.size() > 1;
+    for (const MotionChain::Impact& impact : now_.impacts)
+      find_saltation(event_[std::size_t(impact.damper)].saltation, impact.w * double(now_.impacts.size()));
+    carry_all(1, [&](ChangeOfState& s, int) { apply_saltation(s); });
+  }
+  // Finds the coefficients of (M13.23) and (M13.24), which is (M13.7) for one mass.
+  void find_shares() {
+    const double joined_mass = now_.joined_mass();
+    double passive = 0;  // the shares of masses that join without an impulse
+    for (std::size_t i = 0; i < event_.size(); ++i) {
+      const MassesAlongRun::Mass& mass = now_.masses[i];
+      const OfDamper& its = of_.dampers[i];
+      event_[i].gain = mass.is_active ? its.nu * (1 + its.e) / now_.active_mass : 0;
+      event_[i].share = mass.joins ? its.nu / joined_mass : 0;
+      if (!mass.is_active) passive += event_[i].share;
+    }
+    for (std::size_t i = 0; i < event_.size(); ++i) {
+      EventOfMass& event = event_[i];
+      event.of_w = now_.masses[i].is_active ? event.gain * (1 - passive) + event.share * -of_.dampers[i].e
+                                            : event.share;
+    }
+  }
+  // What (M13.23) and (M13.24) take from y and y' of a mass that flies on, but for its own impact.
+  struct Taken {
+    double y = 0, gained = 0, joined = 0;
+  };
+  Taken taken_by(const ChangeOfState& s) const {
+    Taken all;
+    for (std::size_t i = 0; i < now_.masses.size(); ++i) all.gained += event_[i].gain * s[index_of_w(i)];
+    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
+      if (!now_.masses[i].joins) continue;
+      const double w = s[index_of_w(i)], share = event_[i].share;
+      all.y += share * s[index_of_y(i)];
+      all.joined += share * (now_.masses[i].is_active ? -of_.dampers[i].e * w : w - all.gained);
+    }
+    return all;
+  }
+  // y' of a mass that flies on after the jump.
+  double velocity_after(std::size_t i, double w, const Taken& taken) const {
+    return (now_.masses[i].is_active ? -of_.dampers[i].e * w : w - taken.gained) - taken.joined;
+  }
+  // Sets `all` to (F^+ - D F^-)/w.
+  void find_saltation(std::vector<double>& all, double w) const {
+    const ChangeOfState& before = rates_before_;
+    const Taken taken = taken_by(before);
+    all = rates_after_;
+    all[0] -= before[0];
+    all[1] -= before[1];
+    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
+      all[0] -= event_[i].share * before[index_of_y(i)];
+      all[1] -= event_[i].of_w * before[index_of_w(i)];
+      if (now_.masses[i].wall != 0) continue;
+      all[index_of_y(i)] -= before[index_of_y(i)] - taken.y;
+      all[index_of_w(i)] -= velocity_after(i, before[index_of_w(i)], taken);
+    }
+    for (double& each : all) each /= w;
+  }
+  void apply_saltation(ChangeOfState& s) {
+    const Taken taken = taken_by(s);
+    double x = s[0], v = s[1];
+    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
+      const MassesAlongRun::Mass& mass = now_.masses[i];
+      const EventOfMass& its = event_[i];
+      const double y = s[index_of_y(i)], w = s[index_of_w(i)];
+      if (mass.meets || mass.joins) x += (its.share + (mass.meets ? its.saltation[0] : 0)) * y;
+      if (mass.meets) v += its.saltation[1] * y;
+      v += its.of_w * w;
+    }
+    shifted_.assign(s.size(), 0.0);  // by the delay of the impacts of other masses, and in y' of its own
+    for (std::size_t k = 0; k < now_.masses.size(); ++k) {
+      if (!now_.masses[k].meets) continue;
+      for (std::size_t i = 2; i < s.size(); ++i)
+        if (i != index_of_y(k)) shifted_[i] += event_[k].saltation[i] * s[index_of_y(k)];
+    }
+    s[0] = x;
+    s[1] = v;
+    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
+      double &y = s[index_of_y(i)], &w = s[index_of_w(i)];
+      if (now_.masses[i].wall != 0) {
+        y = w = 0;
+        continue;
+      }
+      const double own = now_.masses[i].meets ? 1 + event_[i].saltation[index_of_y(i)] : 1;
+      y = own * y - taken.y + shifted_[index_of_y(i)];
+      w = velocity_after(i, w, taken) + shifted_[index_of_w(i)];
+    }
+  }
+
+  // Applies the touches and ends of contacts between the motion n and the one before (M13.25).
+  void pass_compliant_events(std::size_t n) {
+    now_.come_to_compliant_events(n);
+    for (std::size_t i = 0; i < now_.masses.size(); ++i)
+      if (now_.ends_contact(i, n)) apply_edge(i, -1);
+    for (const MotionChain::Impact& impact : now_.impacts) apply_edge(std::size_t(impact.damper), 1);
+    now_.pass_compliant_events(n);
+  }
+  // Applies the saltation matrix of touch (sign 1) or end (-1) of a contact (M13.25).
+  void apply_edge(std::size_t damper, int sign) {
+    const OfDamper& its = of_.dampers[damper];
+    const double on_primary = sign * its.nu * its.damping, on_own = -sign * (1 + its.nu) * its.damping;
+    carry_all(1, [&](ChangeOfState& s, int) {
+      const double y = s[index_of_y(damper)];
+      s[1] += on_primary * y;
+      for (std::size_t i = 0; i < now_.masses.size(); ++i)
+        s[index_of_w(i)] += (i == damper ? on_own : -on_primary) * y;
+    });
+  }
+
+  // In how many pieces a motion is taken. rate_of_loss: minus the divergence, the rate at which volumes
+  // contract. A propagator by squaring (M13.27) loses digits where it contracts them much.
+  int pieces_for(double rate_of_loss, double duration) {
+    if (!after_step_ && now_.in_contact.size() < 2) return 1;
+    const double loss = rate_of_loss * duration;
+    if (is_lost(loss)) all_.lost = std::max(all_.lost, 2 * std::max<std::size_t>(1, now_.in_contact.size()));
+    return pieces_of(loss);
+  }
+  // Carries changes, and the state of all masses, through a motion in which none pushes a compliant wall, by
+  // (M13.2) or, while some stick, (M13.22).
+  void pass_flight(const MotionChain::Motion& motion) {
+    const double mass = now_.joined_mass();
+    const Oscillator<double> oscillator =
+        mass == 1 ? of_.free : Oscillator<double>(of_.zeta / mass, 1 / mass);
+    const int pieces = pieces_for(2 * oscillator.a(), motion.duration);
+    const double duration = motion.duration / pieces;
+    const Propagator<double> p = oscillator.propagate(duration);
+    const double spring = oscillator.b() * p.s, slowed = p.c1 - 2 * oscillator.a() * p.s;  // S' - 1
+    carry_all(pieces, [&](ChangeOfState& s, int) {
+      const double x = s[0], v = s[1];
+      s[0] = p.c * x + p.s * v;
+      s[1] = p.v * v - spring * x;
+      for (std::size_t i = 0; i < now_.masses.size(); ++i) {
+        if (now_.masses[i].wall != 0) continue;
+        double &y = s[index_of_y(i)], &w = s[index_of_w(i)];
+        y = (y - (p.c1 * x + p.s1 * v)) + duration * w;
+        w += spring * x - slowed * v;
+      }
+    });
+    if (along_)
+      add_driven(
+          motion, [&](double tau) { return oscillator.panel(tau); },
+          [&](double tau) {
+            const Propagator<double> impulse = oscillator.propagate(tau);
+            return std::array<double, 4>{impulse.s / mass, impulse.v / mass, 0, 0};
+          });
+    if (of_.rigid)
+      for (MassesAlongRun::Mass& each : now_.masses)
+        if (each.wall == 0) each.w += now_.v - motion.v;
+  }
+  // Carries changes through a motion in which one mass pushes a compliant wall. The columns of the propagator
+  // are contacts without a force, each from a unit state.
+  template <class InContact>
+  void pass_contact(const UnforcedModes& modes, const MotionChain::Motion& motion) {
+    const std::size_t in = now_.in_contact.front();
+    const OfDamper& its = of_.dampers[in];
+    const auto from = [&](const State<double>& start) { return InContact(modes, 0, start, Wall::left); };
+    const int pieces = pieces_for(2 * of_.zeta + (1 + its.nu) * its.damping, motion.duration);
+    const double duration = motion.duration / pieces;
+    const std::array columns{from({1, 0, 0, 0}).at(duration), from({0, 1, 0, 0}).at(duration),
+                             from({0, 0, 1, 0}).at(duration), from({0, 0, 0, 1}).at(duration)};
+    carry_all(pieces, [&](ChangeOfState& s, int) {
+      const std::array<double, 4> now{s[0], s[1], s[index_of_y(in)], s[index_of_w(in)]};
+      State<double> to{0, 0, 0, 0};
+      for (std::size_t j = 0; j < 4; ++j) {
+        to.x += columns[j].x * now[j], to.v += columns[j].v * now[j];
+        to.y += columns[j].y * now[j], to.w += columns[j].w * now[j];
+      }
+      s[0] = to.x, s[1] = to.v, s[index_of_y(in)] = to.y, s[index_of_w(in)] = to.w;
+      carry_free(s, duration, now[0], now[1]);
+    });
+    if (along_) {
+      const InContact impulse = from({0, 1, 0, -1});
+      add_driven(
+          motion, [&](double tau) { return impulse.panel(tau); },
+          [&](double tau) {
+            const State<double> s = impulse.at(tau);
+            return std::array<double, 4>{s.x, s.v, s.y, s.w};
+          });
+    }
+  }
+  // The same where several do.
+  void pass_joint_contact(const MotionChain::Motion& motion) {
+    double rate_of_loss = 2 * of_.zeta;
+    for (const std::size_t i : now_.in_contact)
+      rate_of_loss += (1 + of_.dampers[i].nu) * of_.dampers[i].damping;
+    const int pieces = pieces_for(rate_of_loss, motion.duration);
+    const double duration = motion.duration / pieces;
+    const JointPropagator propagator(of_, now_.in_contact, duration, along_ != nullptr);
+    carry_all(pieces, [&](ChangeOfState& s, int piece) {
+      const double x = s[0], v = s[1], time = motion.begin + duration * piece;
+      std::array<double, 4> force{};
+      if (along_ && &s == &along_->by_frequency) force = JointPropagator::secular(of_.force, time);
+      if (along_ && &s == &along_->by_amplitude) force = JointPropagator::harmonic(of_.force, time);
+      propagator.carry(s, force);
+      carry_free(s, duration, x, v);
+    });
+  }
+  // Carries a change of y and y' of all masses that fly, x and v being those of x and x' before.
+  void carry_free(ChangeOfState& s, double duration, double x, double v) const {
+    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
+      if (now_.masses[i].wall != 0) continue;
+      s[index_of_y(i)] += duration * s[index_of_w(i)] - (s[0] - x - duration * v);
+      s[index_of_w(i)] -= s[1] - v;
+    }
+  }
+
+  // Adds the derivatives by omega_f and f0 (M13.3), by Gauss's 16 points in panels of the time tau that is
+  // left until the end. response(tau): x, x', and y, y' of a mass that pushes its wall, a time tau after a
+  // unit impulse of the force.
+  template <class Panel, class Response>
+  void add_driven(const MotionChain::Motion& motion, Panel&& panel, Response&& response) const {
+    std::array<double, 4> by_frequency{}, by_amplitude{};
+    const double duration = motion.duration;
+    for (double from = 0; from < duration;) {
+      const double to =
+          std::min(duration, from + std::max(panel_under(of_.force, panel(from)), duration / 65536));
+      const double half = (to - from) / 2, middle = from + half;
+      for (const auto& [abscissa, weight] : gauss_16) {
+        for (const double side : {-abscissa, abscissa}) {
+          const double tau = middle + half * side, time = motion.begin + (duration - tau);
+          const auto [sin, cos] = of_.force.phase(time);
+          const std::array<double, 4> unit = response(tau);
+          for (std::size_t i = 0; i < 4; ++i) {
+            by_frequency[i] += half * weight * unit[i] * (of_.force.amplitude * time * cos);
+            by_amplitude[i] += half * weight * unit[i] * sin;
+          }
+        }
+      }
+      from = to;
+    }
+    const auto add = [&](const std::array<double, 4>& sum, ChangeOfState& s) {
+      s[0] += sum[0];
+      s[1] += sum[1];
+      for (std::size_t i = 0; i < now_.masses.size(); ++i) {
+        if (now_.masses[i].wall == 0) {
+          s[index_of_y(i)] -= sum[0];
+          s[index_of_w(i)] -= sum[1];
+        } else if (!of_.rigid) {
+          s[index_of_y(i)] += sum[2];
+          s[index_of_w(i)] += sum[3];
+        }
+      }
+    };
+    add(by_frequency, along_->by_frequency);
+    add(by_amplitude, along_->by_amplitude);
+  }
+
+  const VariationalCoefficients& of_;
+  const RecordedRun& run_;
+  AlongRun* along_;
+  const Changes& changes_;
+  const std::function<void()>& after_step_;
+  // y is not followed, nor y' with compliant walls, where no matrix depends on them.
+  MassesAlongRun now_;
+  std::vector<EventOfMass> event_;            // at rigid walls
+  ChangeOfState rates_before_, rates_after_;  // F^- and F^+ of that event
+  ChangeOfState shifted_;
+  Carried all_;
+};
+
+}  // namespace
+
+std::shared_ptr<const VariationalCoefficients> variational_coefficients(const Scene& scene,
+                                                                        const Engine& engine) {
+  return std::make_shared<const VariationalCoefficients>(scene, engine);
+}
+
+Carried carry_changes(const VariationalCoefficients& of, const RecordedRun& run,
+                      std::vector<ChangeOfState>& changes, const std::function<void()>& after_step,
+                      AlongRun* along) {
+  if (along) {
+    *along = {};
+    along->by_frequency.assign(of.dimensions(), 0.0);
+    along->by_amplitude.assign(of.dimensions(), 0.0);
+  }
+  const Changes all = changes_of(changes, along);
+  return VariationalEquations(of, run, along, all, after_step).carry();
+}
+
+}  // namespace impact_damper
