@@ -1,4 +1,4 @@
-#include "impact_damper/orbits/variation_of_dampers.hpp"
+#include "impact_damper/orbits/variational_equations.hpp"
 
 #include <doctest/doctest.h>
 

@@ -632,6 +632,11 @@ class Follower {
         if (at && !(best && best->error <= at->error)) best = at;
       }
       if (!best) continue;
+      // Where orbits enough to extrapolate lie only far away, the last one is nearer: by the slope since
+      // then.
+      const double size = *(last.image.*member), before = (anchor_.image.*member).value_or(0);
+      const double gap = std::fabs((last.point.back() - anchor_.point.back()) * (size / (before - size)));
+      if (before > size && gap < best->error) best = Extrapolated{last.point.back(), gap};
       branch.end = BranchEnd::grazing;
       branch.events.push_back(
           {BranchEventKind::grazing, best->parameter, branch.orbits.back(), std::ssize(branch.orbits)});
