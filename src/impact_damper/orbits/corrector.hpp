@@ -1,0 +1,98 @@
+// Periodic orbits as the solutions of H^n(s; p) - s = 0, and the corrector that finds them
+// (docs/mathematics.md, 13.6).
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "impact_damper/base/expected.hpp"
+#include "impact_damper/engine.hpp"
+#include "impact_damper/math/dense.hpp"
+#include "impact_damper/orbits/multipliers.hpp"
+#include "impact_damper/orbits/orbits.hpp"
+#include "impact_damper/orbits/poincare_map.hpp"
+#include "impact_damper/scene.hpp"
+
+namespace impact_damper::corrector {
+
+std::vector<Problem> problems_of(const OrbitOptions& options);
+
+using Point = Vector;  // the components of a state, then the parameter
+
+Point along(const Point& from, double step, const Point& direction);  // from + step direction
+double distance(const Point& a, const Point& b);
+double largest(const StateVector& s);  // the largest modulus of a component
+StateVector state_at(Point p);
+Point point_at(StateVector s, double parameter);
+
+// The equation H^n(s; p) - s = 0, n = half_periods, for states s and values of one parameter p.
+struct Equation {
+  Scene scene;
+  Engine engine;
+  int half_periods;
+  Parameter parameter;
+  OrbitOptions options;
+
+  Scene scene_at(double value) const {
+    Scene changed = scene;
+    changed.*member_of(parameter) = value;
+    return changed;
+  }
+  // The idle dampers to which (M13.28) applies. For odd n there are none: the mirror determines their place.
+  std::vector<std::size_t> free_to_rest(const PoincareImage& image) const {
+    return half_periods % 2 == 0 ? image.idle : std::vector<std::size_t>{};
+  }
+  // Nearest misses are looked for on orbits only.
+  Expected<PoincareImage, StopReason> image_of(const Point& p, PoincareMap::Derivatives wanted) const {
+    const double misses_within = 2 * options.tolerance * std::max(1.0, largest(state_at(p)));
+    return PoincareMap(scene_at(p.back()), engine, half_periods)(state_of(state_at(p)), wanted,
+                                                                 misses_within);
+  }
+  // Whether a scene may have the iterate's parameter, and no component of its state exceeds 1e12.
+  bool allows(const Point& p) const {
+    for (const SceneField& field : scene_fields)
+      if (field.number.is(member_of(parameter)) &&
+          !(p.back() > 0 && p.back() >= field.least && p.back() <= field.most))
+        return false;
+    return largest(state_at(p)) <= 1e12;
+  }
+};
+
+// The plane of points p with dot_product(normal, p - through) = 0, on which the corrector looks for a
+// solution.
+struct Plane {
+  Point through, normal;
+};
+
+// The plane on which the parameter has the value that it has in p.
+Plane at_value(const Point& p);
+
+struct Solution {
+  Point point;
+  PoincareImage image;
+  Multipliers multipliers;  // only of one that the corrector has found
+  std::vector<double> residuals;
+  Plane plane;
+};
+using Solved = Expected<Solution, NoOrbit>;
+
+// Solves H^n(s) = s on a plane by Newton's method from `start`, which was predicted from `before`.
+Solved solve(const Equation& equation, const Point& before, const Point& start, const Plane& plane);
+
+// The bordered matrix of (M13.11): the derivative of H^n(s) - s by s and the parameter, and a last row.
+Matrix bordered(const Equation& equation, const PoincareImage& image, const Point& last);
+
+// The residual H^m(s) - s, m = half_periods, in which idle dampers count as staying where they rest; nothing
+// if a budget ends the run before.
+std::optional<StateVector> residual_after(const Equation& equation, const Point& p, int half_periods);
+
+Multipliers multipliers_of(const PoincareImage& image);  // without those of idle dampers
+// The unit eigenvector of A for its eigenvalue next to -1, by inverse iteration; nothing if that fails. Idle
+// dampers stay where they rest.
+std::optional<StateVector> eigenvector_of_minus_1(const PoincareImage& image);
+
+// The orbit of a solution. Of a symmetric one the solution is half, and its mirror image the other half.
+Orbit orbit_of(const Equation& equation, const Solution& found, int periods, bool symmetric);
+
+}  // namespace impact_damper::corrector
