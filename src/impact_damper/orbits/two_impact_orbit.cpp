@@ -51,10 +51,10 @@ struct Motion {
 
   State<double> at(double t, const Oscillator<double>& free) const {
     const Propagator<double> p = free.propagate(t);
-    const auto turn = sin_cos(c.omega * t);
+    const auto rotated = sin_cos(c.omega * t);
     const double u0 = x0 - sin, u1 = v0 - c.omega * cos;
-    const double x = sin * turn.cos + cos * turn.sin + u0 * p.c + u1 * p.s;
-    const double v = c.omega * (cos * turn.cos - sin * turn.sin) - u0 * p.s + u1 * p.v;
+    const double x = sin * rotated.cos + cos * rotated.sin + u0 * p.c + u1 * p.s;
+    const double v = c.omega * (cos * rotated.cos - sin * rotated.sin) - u0 * p.s + u1 * p.v;
     return {x, v, x0 + speed * t - x, speed - v};
   }
 
@@ -117,11 +117,11 @@ std::vector<TwoImpactOrbit> two_impact_orbits(const Scene& scene) {
     const double speed = (c.a + sign * std::sqrt(root)) / square;
     if (!(speed > 0)) continue;
     const Motion motion(c, system.zeta, linear, speed);
-    const double turn = 2 * half_turn<double>();
+    const double circle = 2 * half_turn<double>();
     double phase = angle_of(motion.sin / linear, motion.cos / linear) + c.angle_of_h;
-    if (phase < 0) phase += turn;
-    if (phase >= turn) phase -= turn;
-    const double until_phase_0 = (turn - phase) / c.omega;
+    if (phase < 0) phase += circle;
+    if (phase >= circle) phase -= circle;
+    const double until_phase_0 = (circle - phase) / c.omega;
     TwoImpactOrbit orbit;
     orbit.speed = speed;
     orbit.phase = phase;
