@@ -91,6 +91,13 @@ std::vector<double> awkward_numbers() {
   return numbers;
 }
 
+TEST_CASE("a rounded number is the one that its text spells") {
+  CHECK(rounded_to(0.078849, 3) == 0.0788);
+  CHECK(rounded_to(-1234567, 3) == -1.23e6);
+  CHECK(rounded_to(0.6, 17) == 0.6);
+  CHECK(std::isinf(rounded_to(std::numeric_limits<double>::infinity(), 3)));
+}
+
 TEST_CASE("by the C library numbers have the text of to_chars, and are read as by from_chars") {
   for (const double value : awkward_numbers()) {
     if (std::isnan(value)) continue;

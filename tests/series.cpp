@@ -13,7 +13,7 @@
 #include <set>
 #include <tuple>
 
-#include "application/sweeps/plan_file.hpp"
+#include "application/sweeps/plan.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/base/errors.hpp"

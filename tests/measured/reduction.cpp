@@ -57,8 +57,10 @@ std::int64_t nearest_peak(double t) { return std::lround((t * omega - 1) / std::
 
 // Of the loss factor (M12.1), per radian of the record's own frequency: the largest relative error.
 double loss_error(const Reduction& r) {
-  const LossFactor loss =
-      local_loss_factor(half_cycles_of(r, 1, 1 / (2 * std::numbers::pi * r.frequency)), 0, r.time.size());
+  HalfCycles rows;
+  for (const double each : r.time) rows.peak_time.push_back(each * 2 * std::numbers::pi * r.frequency);
+  rows.amplitude = r.amplitude;
+  const LossFactor loss = local_loss_factor(rows, 0, r.time.size());
   double worst = 0;
   for (const double each : loss.eta) worst = std::max(worst, std::abs(each / (2 * zeta) - 1));
   return worst;

@@ -13,7 +13,7 @@
 
 #include "application/reproduction/measures.hpp"
 #include "application/reproduction/series.hpp"
-#include "application/sweeps/plan_file.hpp"
+#include "application/sweeps/plan.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "application/sweeps/plan_file.hpp"
-
 using namespace impact_damper;
 
 namespace {

@@ -6,7 +6,7 @@
 #include "application/reproduction/claims.hpp"
 #include "application/reproduction/manifest.hpp"
 #include "application/reproduction/scene_runs.hpp"
-#include "application/sweeps/plan_file.hpp"
+#include "application/sweeps/plan.hpp"
 #include "application/sweeps/sweep_table.hpp"
 #include "arguments.hpp"
 #include "commands.hpp"

@@ -6,7 +6,6 @@
 #include <filesystem>
 
 #include "application/sweeps/damper_set_design.hpp"
-#include "application/sweeps/design_file.hpp"
 #include "application/sweeps/lightest_design.hpp"
 #include "commands.hpp"
 #include "design_dampers.hpp"
@@ -56,7 +55,7 @@ DesignRange range_of(Arguments& arguments, const std::string& option, DesignRang
 }
 
 // Returns a number for reading: "0.0532", "1980".
-std::string readable(double value) { return number_text(*parse_number(rounded_text(value, 3))); }
+std::string readable(double value) { return number_text(rounded_to(value, 3)); }
 
 struct Asked {
   DesignQuestion question;

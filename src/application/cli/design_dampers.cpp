@@ -73,7 +73,7 @@ Asked asked_of(Arguments& arguments) {
   return asked;
 }
 
-double in_three_digits(double value) { return *parse_number(rounded_text(value, 3)); }
+double in_three_digits(double value) { return rounded_to(value, 3); }
 std::string readable(double value) { return number_text(in_three_digits(value)); }
 
 // Returns the scene with these dampers as the text of its file, in units if the question was.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "application/sweeps/hdf5_table.hpp"
+#include "application/sweeps/sweep_table.hpp"
 #include "impact_damper/base/text.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "interruption.hpp"

@@ -5,7 +5,7 @@
 
 #include "application/reproduction/catalogue.hpp"
 #include "application/reproduction/scene_runs.hpp"
-#include "application/sweeps/plan_file.hpp"
+#include "application/sweeps/plan.hpp"
 #include "arguments.hpp"
 #include "commands.hpp"
 #include "impact_damper/base/errors.hpp"

@@ -6,9 +6,8 @@
 #include <filesystem>
 #include <iostream>
 
-#include "application/sweeps/hdf5_table.hpp"
-#include "application/sweeps/plan_file.hpp"
-#include "application/sweeps/share_file.hpp"
+#include "application/sweeps/plan.hpp"
+#include "application/sweeps/sweep_table.hpp"
 #include "commands.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/sha256.hpp"

@@ -162,7 +162,9 @@ Comparison compared(const std::string& record_name, const MeasuredRecord& record
   Comparison c;
   c.record_name = record_name, c.scene_name = scene_name, c.record = record, c.engine = engine;
   c.reduction = reduced(record_name, record);
-  c.loss = loss_of(half_cycles_of(c.reduction, 1, 1), 2 * half_turn<double>() * c.reduction.frequency);
+  HalfCycles rows;
+  rows.peak_time = c.reduction.time, rows.amplitude = c.reduction.amplitude;
+  c.loss = loss_of(std::move(rows), 2 * half_turn<double>() * c.reduction.frequency);
   c.bins = loss_bins(c.reduction);
   c.highest_frequency = scales_of(scene).of(Dimension::frequency);
   c.lowest_frequency = c.highest_frequency / std::sqrt(1 + dimensionless(scene).damper().mass_ratio);

@@ -22,9 +22,11 @@ namespace {
 // mean_x)^2.
 struct Line {
   double slope = 0, mean_x = 0, mean_y = 0, squares = 0;
-  double at(double x) const { return mean_y + slope * (x - mean_x); }
 };
-Line line_through(std::span<const double> x, std::span<const double> y) {
+
+Line line_through(const Vector& all_x, const Vector& all_y, const IndexRange& rows) {
+  const auto x = std::span(all_x).subspan(rows.first, rows.size()),
+             y = std::span(all_y).subspan(rows.first, rows.size());
   Line line;
   const double count = double(x.size());
   for (std::size_t i = 0; i < x.size(); ++i)
@@ -39,153 +41,236 @@ Line line_through(std::span<const double> x, std::span<const double> y) {
   return line;
 }
 
+// Returns the rows of each bin: from the first at or below its upper end to the last before the first below
+// its lower end.
+std::vector<IndexRange> rows_of_bins(const Vector& logarithms, const std::vector<LossBin>& bins) {
+  std::vector<IndexRange> ranges;
+  std::size_t at = 0;
+  for (const LossBin& bin : bins) {
+    const double upper = logarithm(bin.upper), lower = logarithm(bin.lower);
+    while (at < logarithms.size() && logarithms[at] > upper) ++at;
+    std::size_t end = at;
+    while (end < logarithms.size() && logarithms[end] >= lower) ++end;
+    ranges.push_back({at, end});
+    at = end;
+  }
+  return ranges;
+}
+
+Vector logarithms_of(const Vector& amplitude, double length) {
+  Vector logarithms;
+  logarithms.reserve(amplitude.size());
+  for (const double each : amplitude)
+    logarithms.push_back(logarithm(std::max(each * length, std::numeric_limits<double>::min())));
+  return logarithms;
+}
+
+double log_loss_error(const Reduction& reduction, const Line& line, const IndexRange& rows) {
+  double variance = 0;
+  for (std::size_t i = rows.first; i < rows.end; ++i) {
+    const double part = (reduction.time[i] - line.mean_x) * reduction.error[i] / reduction.amplitude[i];
+    variance += part * part / (line.squares * line.squares);
+  }
+  return std::sqrt(variance) / std::abs(line.slope);
+}
+
+// A parameter has the name of its field.
+const UnitField& field_of(FitParameter parameter) {
+  return *std::ranges::find(unit_fields, name_of(parameter), &UnitField::name);
+}
+
+}  // namespace
+
+// --- Bins -------------------------------------------------------------------------------------------------
+
+std::vector<LossBin> loss_bins(const Reduction& reduction) {
+  constexpr std::size_t least_rows = 8;
+  constexpr std::int64_t longest_gap = 3;                             // half cycles
+  constexpr double usual_ratio = 0.25, most_bins = 16, few_bins = 8;  // usual_ratio: of ln A
+  constexpr double good_error = 0.1, worst_error = 0.3;
+  const Vector logarithms = logarithms_of(reduction.amplitude, 1);
+  const double whole = logarithms.front() - logarithms.back();
+  const double ratio = std::max(std::min(usual_ratio, whole / few_bins), whole / most_bins);
+  const double widest = std::max(4 * usual_ratio, ratio);
+  const auto line_of = [&](const IndexRange& rows) { return line_through(reduction.time, logarithms, rows); };
+  // Bins end halfway between rows, so that the same decay has the same rows in each bin.
+  const auto end_before = [&](std::size_t row) {
+    if (row == 0) return reduction.amplitude[0];
+    if (row == logarithms.size()) return reduction.amplitude.back();
+    return exponential((logarithms[row - 1] + logarithms[row]) / 2);
+  };
+  std::vector<LossBin> bins;
+  for (std::size_t first = 0, next = 1; next <= logarithms.size(); ++next) {
+    const bool ends = next == logarithms.size() ||
+                      reduction.half_cycle[next] - reduction.half_cycle[next - 1] > longest_gap;
+    const IndexRange rows{first, next};
+    if (next - first >= least_rows) {
+      const Line line = line_of(rows);
+      const double error = log_loss_error(reduction, line, rows);
+      LossBin bin{end_before(first), end_before(next)};
+      // No bin contains a gap.
+      if (first > 0 && reduction.half_cycle[first] - reduction.half_cycle[first - 1] > longest_gap)
+        bin.upper = reduction.amplitude[first];
+      if (ends) bin.lower = reduction.amplitude[next - 1];
+      const double covered = logarithm(bin.upper / bin.lower);
+      const bool is_full = covered >= ratio && (error <= good_error || covered >= widest);
+      const bool is_rest = ends && covered >= ratio / 2;
+      if ((is_full || is_rest) && line.slope < 0 && error < worst_error) {
+        bins.push_back(bin);
+        first = next;
+      }
+    }
+    if (ends) first = next;
+  }
+  // The loss factor of a bin follows by the same rule as that of a simulated decay.
+  const std::vector<IndexRange> ranges = rows_of_bins(logarithms, bins);
+  std::vector<LossBin> valid;
+  IndexRange all;  // of the valid bins
+  double largest = 0;
+  for (std::size_t k = 0; k < bins.size(); ++k) {
+    if (ranges[k].end < ranges[k].first + least_rows) continue;
+    const Line line = line_of(ranges[k]);
+    LossBin bin = bins[k];
+    bin.loss = -2 * line.slope;  // divided by omega below
+    bin.error = log_loss_error(reduction, line, ranges[k]);
+    bin.half_cycles = std::int64_t(ranges[k].end - ranges[k].first);
+    if (!(bin.loss > 0 && bin.error < worst_error)) continue;
+    // After impact failure single impacts decide the loss. Scatter about a mean does not describe that.
+    constexpr double failed = 0.5;  // of the largest loss factor
+    if (bin.loss < failed * largest) break;
+    largest = std::max(largest, bin.loss);
+    if (valid.empty()) all.first = ranges[k].first;
+    all.end = ranges[k].end;
+    valid.push_back(bin);
+  }
+  if (valid.empty()) return valid;
+  // The mean frequency is that of the bins, not of the record, because it rises where impacts fail (M16.5).
+  const double omega = half_turn<double>() *
+                       double(reduction.half_cycle[all.end - 1] - reduction.half_cycle[all.first]) /
+                       (reduction.time[all.end - 1] - reduction.time[all.first]);
+  for (LossBin& each : valid) each.loss /= omega;
+  return valid;
+}
+
+std::vector<double> log_losses(const HalfCycles& rows, double length, const std::vector<LossBin>& bins) {
+  constexpr std::size_t least_rows = 4;
+  const Vector logarithms = logarithms_of(rows.amplitude, length);
+  Vector losses;
+  const std::vector<IndexRange> ranges = rows_of_bins(logarithms, bins);
+  for (auto [first, end] : ranges) {
+    if (end < first + least_rows) {  // after strong damping: neighbouring rows are used, too
+      first = first > 0 ? first - 1 : first;
+      end = first + least_rows;
+      if (end > logarithms.size()) break;
+    }
+    const Line line = line_through(rows.peak_time, logarithms, {first, end});
+    if (!(line.slope < 0)) break;
+    losses.push_back(-2 * line.slope);
+  }
+  if (losses.empty()) return losses;
+  // A bin above all of the decay has no rows: its end may be 0.
+  const std::size_t first = ranges.front().first,
+                    end = std::min(ranges[losses.size() - 1].end, logarithms.size());
+  if (end < first + 2) return {};
+  const double omega =
+      half_turn<double>() * double(end - 1 - first) / (rows.peak_time[end - 1] - rows.peak_time[first]);
+  for (double& each : losses) each = logarithm(each / omega);
+  return losses;
+}
+
+// --- Parameters -------------------------------------------------------------------------------------------
+
+std::string_view unit_of(FitParameter parameter) { return unit_of(field_of(parameter).dimension, true); }
+double value_of(const SceneInUnits& scene, FitParameter parameter) {
+  if (const auto& given = field_of(parameter).number.in(scene)) return *given;
+  const Scene made = dimensionless(scene);
+  return parameter == FitParameter::restitution ? made.damper().restitution : made.damping_ratio;
+}
+void set_value(SceneInUnits& scene, FitParameter parameter, double value) {
+  if (parameter == FitParameter::damping_ratio) scene.damping.reset();
+  field_of(parameter).number.in(scene) = value;
+}
+
+Scene decay_scene(const SceneInUnits& scene, const Reduction& reduction, double until, std::uint64_t seed,
+                  std::int64_t draw) {
+  constexpr double above = 1.1, below = 0.97, longer = 3;
+  constexpr std::uint32_t place_in_cavity = 100;  // a number that no axis has in a draw
+  SceneInUnits released = scene;
+  released.initial_displacement = above * reduction.amplitude.front();
+  released.initial_velocity.reset();
+  released.damper().secondary_velocity.reset();
+  released.damper().secondary_displacement.reset();
+  released.until_millimetres = below * until;
+  released.until_seconds = longer * (reduction.time.back() - reduction.time.front());
+  Scene made = dimensionless(released);
+  made.damper().y0 = uniform_draw({seed, place_in_cavity, draw});
+  return made;
+}
+
+namespace {
+
 // --- The searched range -----------------------------------------------------------------------------------
 
 // Searched range of a parameter in a coordinate of which the loss factor is nearly a polynomial: ln(1 - e),
 // zeta, ln epsilon or ln m. value() returns the parameter at a fraction of the range, from 0 to 1.
-struct Axis {
+struct SearchedRange {
   FitParameter parameter = FitParameter::restitution;
   double from = 0, to = 1;  // coordinates of the ends
   double value(double part) const {
     const double coordinate = from + (to - from) * part;
-    switch (parameter) {
-      case FitParameter::restitution:
-        return 1 - exponential(coordinate);
-      case FitParameter::damping_ratio:
-        return coordinate;
-      case FitParameter::clearance:
-      case FitParameter::secondary_mass:
-        break;
-    }
-    return exponential(coordinate);
+    if (parameter == FitParameter::damping_ratio) return coordinate;
+    const double number = exponential(coordinate);
+    return parameter == FitParameter::restitution ? 1 - number : number;
   }
 };
 
-Axis searched_axis(FitParameter parameter, const SceneInUnits& scene, const std::vector<LossBin>& bins) {
+SearchedRange searched_range(FitParameter parameter, const SceneInUnits& scene,
+                             const std::vector<LossBin>& bins) {
   constexpr double least_restitution = 0.02, most_restitution = 0.95, clearance_factor = 3, mass_factor = 2;
   constexpr double beyond = 1.5;  // margin above the zeta whose viscous loss 2 zeta is the whole loss
-  Axis axis{.parameter = parameter};
-  const double about = logarithm(std::max(value_of(scene, parameter), std::numeric_limits<double>::min()));
+  const auto about = [&](double factor) -> SearchedRange {
+    const double given = std::max(value_of(scene, parameter), std::numeric_limits<double>::min());
+    return {parameter, logarithm(given) - logarithm(factor), logarithm(given) + logarithm(factor)};
+  };
   switch (parameter) {
     case FitParameter::restitution:
-      axis.from = logarithm(1 - least_restitution), axis.to = logarithm(1 - most_restitution);
-      break;
+      return {parameter, logarithm(1 - least_restitution), logarithm(1 - most_restitution)};
     case FitParameter::damping_ratio:
-      axis.from = 0;
-      axis.to = beyond * std::ranges::min_element(bins, {}, &LossBin::loss)->loss / 2;
-      break;
+      return {parameter, 0, beyond * std::ranges::min_element(bins, {}, &LossBin::loss)->loss / 2};
     case FitParameter::clearance:
-      axis.from = about - logarithm(clearance_factor), axis.to = about + logarithm(clearance_factor);
-      break;
+      return about(clearance_factor);
     case FitParameter::secondary_mass:
-      axis.from = about - logarithm(mass_factor), axis.to = about + logarithm(mass_factor);
       break;
   }
-  return axis;
+  return about(mass_factor);
 }
 
+// A box in the searched range, in fractions of it.
 struct Box {
   Vector low, high;
+  double at(std::size_t axis, double part) const { return low[axis] + (high[axis] - low[axis]) * part; }
 };
 
-// --- Runs in a box ----------------------------------------------------------------------------------------
+// --- The loss factor as a polynomial ----------------------------------------------------------------------
 
 struct Points {
-  Matrix place;  // a row for each run with a loss factor in every bin, in fractions of the axes
+  Matrix place;  // a row for each run with a loss factor in every bin, in fractions of the ranges
   Matrix loss;   // ln eta of each bin
 };
 
-class Search {
- public:
-  Search(const SceneInUnits& scene, const Engine& engine, const Reduction& reduction,
-         const std::vector<LossBin>& bins, const FitOptions& options,
-         const std::function<void(const std::string&)>& tell)
-      : scene_(scene), engine_(engine), reduction_(reduction), bins_(bins), options_(options), tell_(tell) {
-    for (const FitParameter each : options.parameters) axes.push_back(searched_axis(each, scene, bins));
-  }
-
-  // Simulates one decay at each of `wanted` points of a Latin hypercube in the box for which `is_near` holds,
-  // or at fewer if these are rare. Returns the runs that have a loss factor in every bin.
-  template <class IsNear>
-  Points points(const Box& box, std::int64_t wanted, const IsNear& is_near) {
-    constexpr std::int64_t most_candidates = 64;  // for each wanted point
-    const std::uint64_t seed = (options_.seed << 8) + std::uint64_t(++stage_);
-    std::vector<Vector> places;
-    const std::int64_t candidates = wanted * most_candidates;
-    for (std::int64_t i = 0; i < candidates && std::int64_t(places.size()) < wanted; ++i) {
-      Vector place(axes.size());
-      for (std::size_t j = 0; j < axes.size(); ++j)
-        place[j] = box.low[j] +
-                   (box.high[j] - box.low[j]) * stratified_draw({seed, std::uint32_t(j), i}, candidates);
-      if (is_near(place)) places.push_back(std::move(place));
-    }
-    const auto count = std::int64_t(places.size());
-    Matrix losses(places.size());
-    std::atomic<std::int64_t> done{0};
-    for_each_index(count, options_.threads, [&](std::int64_t i) {
-      const Vector& place = places[std::size_t(i)];
-      SceneInUnits scene = scene_;
-      for (std::size_t j = 0; j < axes.size(); ++j)
-        set_value(scene, axes[j].parameter, axes[j].value(place[j]));
-      const Scene decay = decay_scene(scene, reduction_, bins_.back().lower, seed, i);
-      const HalfCycles rows = simulated_half_cycles(decay, engine_);
-      losses[std::size_t(i)] = log_losses(rows, *scene.damper().clearance, bins_);
-      constexpr std::int64_t often = 50;
-      if (const std::int64_t all = ++done; all % often == 0)
-        tell_("fitting, stage " + std::to_string(stage_) + ", " + std::to_string(all) + " of " +
-              std::to_string(count) + " runs");
-    });
-    runs += count;
-    Points points;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      if (losses[i].size() < bins_.size()) continue;
-      points.place.push_back(std::move(places[i]));
-      points.loss.push_back(std::move(losses[i]));
-    }
-    return points;
-  }
-
-  std::vector<Axis> axes;
-  std::int64_t runs = 0;
-
- private:
-  const SceneInUnits& scene_;
-  const Engine& engine_;
-  const Reduction& reduction_;
-  const std::vector<LossBin>& bins_;
-  const FitOptions& options_;
-  const std::function<void(const std::string&)>& tell_;
-  int stage_ = 0;
-};
-
-// Returns the box about the fraction `kept` of the points that is nearest to the record, with a margin.
-Box box_of_nearest(const Points& points, const std::vector<LossBin>& bins, const Box& box, double kept) {
-  constexpr double usual_scatter = 0.1, margin = 0.15;
-  std::vector<std::pair<double, std::size_t>> distances;
-  for (std::size_t i = 0; i < points.loss.size(); ++i) {
-    double sum = 0;
-    for (std::size_t k = 0; k < bins.size(); ++k) {
-      const double d = points.loss[i][k] - logarithm(bins[k].loss);
-      sum += d * d / (bins[k].error * bins[k].error + usual_scatter * usual_scatter);
-    }
-    distances.emplace_back(sum, i);
-  }
-  std::ranges::sort(distances);
-  distances.resize(std::size_t(kept * double(distances.size())));
-  Box next = box;
-  for (std::size_t j = 0; j < box.low.size(); ++j) {
-    double low = 1, high = 0;
-    for (const auto& each : distances) {
-      low = std::min(low, points.place[each.second][j]);
-      high = std::max(high, points.place[each.second][j]);
-    }
-    const double more = margin * (high - low);
-    next.low[j] = std::max(0.0, low - more), next.high[j] = std::min(1.0, high + more);
-  }
-  return next;
+Matrix transposed(const Matrix& a) {
+  Matrix columns(a.front().size(), Vector(a.size()));
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t j = 0; j < a[i].size(); ++j) columns[j][i] = a[i][j];
+  return columns;
 }
 
-// --- The loss factor as a polynomial ----------------------------------------------------------------------
+// Returns the dot products of each two rows: a a^T.
+Matrix products_of_rows(const Matrix& a) {
+  Matrix products;
+  for (const Vector& row : a) products.push_back(product(a, row));
+  return products;
+}
 
 // Quadratic polynomial of ln eta of each bin over a box, and the covariance of the runs about it (M16.6).
 struct Emulator {
@@ -201,28 +286,21 @@ struct Emulator {
                                         const std::vector<LossBin>& bins) {
     const std::size_t count = points.place.size(), terms = terms_of(Vector(box.low.size(), 0.0)).size();
     if (count < least_runs * terms) return {};
-    Matrix design, products(terms, Vector(terms, 0.0));
-    for (const Vector& place : points.place) {
-      design.push_back(terms_of(within(box, place)));
-      for (std::size_t a = 0; a < terms; ++a)
-        for (std::size_t b = 0; b < terms; ++b) products[a][b] += design.back()[a] * design.back()[b];
-    }
-    const auto normal = Cholesky::of(std::move(products));
+    Matrix design;
+    for (const Vector& place : points.place) design.push_back(terms_of(within(box, place)));
+    const Matrix columns = transposed(design);
+    const auto normal = Cholesky::of(products_of_rows(columns));
     if (!normal) return {};
-    Matrix residual(bins.size(), Vector(count)), coefficients;
-    for (std::size_t k = 0; k < bins.size(); ++k) {
-      Vector right(terms, 0.0);
-      for (std::size_t i = 0; i < count; ++i)
-        for (std::size_t a = 0; a < terms; ++a) right[a] += design[i][a] * points.loss[i][k];
-      coefficients.push_back(normal->solution(std::move(right)));
-      for (std::size_t i = 0; i < count; ++i)
-        residual[k][i] = points.loss[i][k] - dot_product(coefficients[k], design[i]);
+    Matrix residual = transposed(points.loss), coefficients;
+    for (Vector& losses : residual) {
+      coefficients.push_back(normal->solution(product(columns, losses)));
+      const Vector polynomial = product(design, coefficients.back());
+      for (std::size_t i = 0; i < count; ++i) losses[i] -= polynomial[i];
     }
-    Matrix covariance(bins.size(), Vector(bins.size()));
+    Matrix covariance = products_of_rows(residual);
     Vector scatter, observed;
     for (std::size_t a = 0; a < bins.size(); ++a) {
-      for (std::size_t b = 0; b < bins.size(); ++b)
-        covariance[a][b] = dot_product(residual[a], residual[b]) / double(count - terms);
+      for (double& entry : covariance[a]) entry /= double(count - terms);
       scatter.push_back(std::sqrt(covariance[a][a]));
       covariance[a][a] += bins[a].error * bins[a].error;
       observed.push_back(logarithm(bins[a].loss));
@@ -260,6 +338,95 @@ struct Emulator {
   }
 };
 
+// Where decays are simulated: the points of a box at which chi square of the previous stage's polynomial, if
+// there was one, is at most `limit`.
+struct Region {
+  Box box;
+  std::optional<Emulator> before;
+  std::optional<double> limit;
+  bool is_near(const Vector& place) const { return !limit || before->chi_square(place) <= *limit; }
+};
+
+// --- Runs in a box ----------------------------------------------------------------------------------------
+
+// Simulates decays of a scene with other numbers.
+struct DecaySampler {
+  const SceneInUnits& scene;
+  const Engine& engine;
+  const Reduction& reduction;
+  const std::vector<LossBin>& bins;
+  const FitOptions& options;
+  const std::function<void(const std::string&)>& tell;
+  std::vector<SearchedRange> ranges{};
+  std::int64_t runs = 0;  // so far
+  int stage = 0;          // the last
+
+  // Simulates one decay at each of `wanted` points of a Latin hypercube in the region, or at fewer if its
+  // points are rare in its box. Returns the runs that have a loss factor in every bin.
+  Points points(const Region& region, std::int64_t wanted) {
+    constexpr std::int64_t most_candidates = 64;  // for each wanted point
+    const std::uint64_t seed = (options.seed << 8) + std::uint64_t(++stage);
+    std::vector<Vector> places;
+    const std::int64_t candidates = wanted * most_candidates;
+    for (std::int64_t i = 0; i < candidates && std::int64_t(places.size()) < wanted; ++i) {
+      Vector place(ranges.size());
+      for (std::size_t j = 0; j < place.size(); ++j)
+        place[j] = region.box.at(j, stratified_draw({seed, std::uint32_t(j), i}, candidates));
+      if (region.is_near(place)) places.push_back(std::move(place));
+    }
+    const auto count = std::int64_t(places.size());
+    Matrix losses(places.size());
+    std::atomic<std::int64_t> done{0};
+    for_each_index(count, options.threads, [&](std::int64_t i) {
+      SceneInUnits varied = scene;
+      for (std::size_t j = 0; j < ranges.size(); ++j)
+        set_value(varied, ranges[j].parameter, ranges[j].value(places[std::size_t(i)][j]));
+      const Scene decay = decay_scene(varied, reduction, bins.back().lower, seed, i);
+      losses[std::size_t(i)] =
+          log_losses(simulated_half_cycles(decay, engine), *varied.damper().clearance, bins);
+      constexpr std::int64_t often = 50;
+      if (const std::int64_t all = ++done; all % often == 0)
+        tell("fitting, stage " + std::to_string(stage) + ", " + std::to_string(all) + " of " +
+             std::to_string(count) + " runs");
+    });
+    runs += count;
+    Points points;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      if (losses[i].size() < bins.size()) continue;
+      points.place.push_back(std::move(places[i]));
+      points.loss.push_back(std::move(losses[i]));
+    }
+    return points;
+  }
+};
+
+// Returns the box about the fraction `kept` of the points that is nearest to the record, with a margin.
+Box box_of_nearest(const Points& points, const std::vector<LossBin>& bins, const Box& box, double kept) {
+  constexpr double usual_scatter = 0.1, margin = 0.15;
+  std::vector<std::pair<double, std::size_t>> distances;
+  for (std::size_t i = 0; i < points.loss.size(); ++i) {
+    double sum = 0;
+    for (std::size_t k = 0; k < bins.size(); ++k) {
+      const double d = points.loss[i][k] - logarithm(bins[k].loss);
+      sum += d * d / (bins[k].error * bins[k].error + usual_scatter * usual_scatter);
+    }
+    distances.emplace_back(sum, i);
+  }
+  std::ranges::sort(distances);
+  distances.resize(std::size_t(kept * double(distances.size())));
+  Box next = box;
+  for (std::size_t j = 0; j < box.low.size(); ++j) {
+    double low = 1, high = 0;
+    for (const auto& each : distances) {
+      low = std::min(low, points.place[each.second][j]);
+      high = std::max(high, points.place[each.second][j]);
+    }
+    const double more = margin * (high - low);
+    next.low[j] = std::max(0.0, low - more), next.high[j] = std::min(1.0, high + more);
+  }
+  return next;
+}
+
 // --- chi square on a grid ---------------------------------------------------------------------------------
 
 struct Profiles {
@@ -273,11 +440,10 @@ double node_of(const Box& box, std::size_t axis, std::size_t node, std::size_t n
   return box.low[axis] + (box.high[axis] - box.low[axis]) * double(node) / double(nodes - 1);
 }
 
-// Computes chi square on a grid over the box and returns its minimum, its profile along each axis and the
-// correlations. Where `is_near` does not hold, no run was simulated and chi square counts as infinite.
-template <class IsNear>
-Profiles profiles_of(const Emulator& emulator, const Box& box, std::size_t nodes, const IsNear& is_near) {
-  const std::size_t axes = box.low.size();
+// Computes chi square on a grid over the region's box and returns its minimum, its profile along each axis
+// and the correlations. Outside of the region, no run was simulated and chi square counts as infinite.
+Profiles profiles_of(const Emulator& emulator, const Region& region, std::size_t nodes) {
+  const std::size_t axes = region.box.low.size();
   Profiles profiles;
   profiles.of.assign(axes, Vector(nodes, std::numeric_limits<double>::infinity()));
   std::size_t all = 1;
@@ -288,8 +454,8 @@ Profiles profiles_of(const Emulator& emulator, const Box& box, std::size_t nodes
   };
   Vector place(axes), values(all);
   for (std::size_t i = 0; i < all; ++i) {
-    for (std::size_t j = 0; j < axes; ++j) place[j] = node_of(box, j, index(i, j), nodes);
-    values[i] = is_near(place) ? emulator.chi_square(place) : std::numeric_limits<double>::infinity();
+    for (std::size_t j = 0; j < axes; ++j) place[j] = node_of(region.box, j, index(i, j), nodes);
+    values[i] = region.is_near(place) ? emulator.chi_square(place) : std::numeric_limits<double>::infinity();
     if (values[i] < profiles.least) profiles.least = values[i], profiles.best = place;
     for (std::size_t j = 0; j < axes; ++j) {
       double& least = profiles.of[j][index(i, j)];
@@ -387,182 +553,7 @@ std::size_t nodes_for(std::size_t axes) {
   return nodes[axes];
 }
 
-// A parameter has the name of its field.
-const UnitField& field_of(FitParameter parameter) {
-  return *std::ranges::find(unit_fields, name_of(parameter), &UnitField::name);
-}
-
 }  // namespace
-
-// --- Bins -------------------------------------------------------------------------------------------------
-
-namespace {
-
-// Returns the rows of each bin: from the first at or below its upper end to the last before the first below
-// its lower end.
-struct RowRange {
-  std::size_t first = 0, end = 0;
-};
-std::vector<RowRange> rows_of_bins(const Vector& logarithms, const std::vector<LossBin>& bins) {
-  std::vector<RowRange> ranges;
-  std::size_t at = 0;
-  for (const LossBin& bin : bins) {
-    const double upper = logarithm(bin.upper), lower = logarithm(bin.lower);
-    while (at < logarithms.size() && logarithms[at] > upper) ++at;
-    std::size_t end = at;
-    while (end < logarithms.size() && logarithms[end] >= lower) ++end;
-    ranges.push_back({at, end});
-    at = end;
-  }
-  return ranges;
-}
-
-Vector logarithms_of(const Vector& amplitude, double length) {
-  Vector logarithms;
-  logarithms.reserve(amplitude.size());
-  for (const double each : amplitude)
-    logarithms.push_back(logarithm(std::max(each * length, std::numeric_limits<double>::min())));
-  return logarithms;
-}
-
-double log_loss_error(const Reduction& reduction, const Line& line, const RowRange& rows) {
-  double variance = 0;
-  for (std::size_t i = rows.first; i < rows.end; ++i) {
-    const double part = (reduction.time[i] - line.mean_x) * reduction.error[i] / reduction.amplitude[i];
-    variance += part * part / (line.squares * line.squares);
-  }
-  return std::sqrt(variance) / std::abs(line.slope);
-}
-
-}  // namespace
-
-std::vector<LossBin> loss_bins(const Reduction& reduction) {
-  constexpr std::size_t least_rows = 8;
-  constexpr std::int64_t longest_gap = 3;                             // half cycles
-  constexpr double usual_ratio = 0.25, most_bins = 16, few_bins = 8;  // usual_ratio: of ln A
-  constexpr double good_error = 0.1, worst_error = 0.3;
-  const Vector logarithms = logarithms_of(reduction.amplitude, 1);
-  const double whole = logarithms.front() - logarithms.back();
-  const double ratio = std::max(std::min(usual_ratio, whole / few_bins), whole / most_bins);
-  const double widest = std::max(4 * usual_ratio, ratio);
-  const auto line_of = [&](const RowRange& rows) {
-    return line_through(std::span(reduction.time).subspan(rows.first, rows.end - rows.first),
-                        std::span(logarithms).subspan(rows.first, rows.end - rows.first));
-  };
-  // Bins end halfway between rows, so that the same decay has the same rows in each bin.
-  const auto end_before = [&](std::size_t row) {
-    if (row == 0) return reduction.amplitude[0];
-    if (row == logarithms.size()) return reduction.amplitude.back();
-    return exponential((logarithms[row - 1] + logarithms[row]) / 2);
-  };
-  std::vector<LossBin> bins;
-  for (std::size_t first = 0, next = 1; next <= logarithms.size(); ++next) {
-    const bool ends = next == logarithms.size() ||
-                      reduction.half_cycle[next] - reduction.half_cycle[next - 1] > longest_gap;
-    const RowRange rows{first, next};
-    if (next - first >= least_rows) {
-      const Line line = line_of(rows);
-      const double error = log_loss_error(reduction, line, rows);
-      LossBin bin{end_before(first), end_before(next)};
-      // No bin contains a gap.
-      if (first > 0 && reduction.half_cycle[first] - reduction.half_cycle[first - 1] > longest_gap)
-        bin.upper = reduction.amplitude[first];
-      if (ends) bin.lower = reduction.amplitude[next - 1];
-      const double covered = logarithm(bin.upper / bin.lower);
-      const bool is_full = covered >= ratio && (error <= good_error || covered >= widest);
-      const bool is_rest = ends && covered >= ratio / 2;
-      if ((is_full || is_rest) && line.slope < 0 && error < worst_error) {
-        bins.push_back(bin);
-        first = next;
-      }
-    }
-    if (ends) first = next;
-  }
-  // The loss factor of a bin follows by the same rule as that of a simulated decay.
-  const std::vector<RowRange> ranges = rows_of_bins(logarithms, bins);
-  std::vector<LossBin> valid;
-  RowRange all;  // of the valid bins
-  double largest = 0;
-  for (std::size_t k = 0; k < bins.size(); ++k) {
-    if (ranges[k].end < ranges[k].first + least_rows) continue;
-    const Line line = line_of(ranges[k]);
-    LossBin bin = bins[k];
-    bin.loss = -2 * line.slope;  // divided by omega below
-    bin.error = log_loss_error(reduction, line, ranges[k]);
-    bin.half_cycles = std::int64_t(ranges[k].end - ranges[k].first);
-    if (!(bin.loss > 0 && bin.error < worst_error)) continue;
-    // After impact failure single impacts decide the loss. Scatter about a mean does not describe that.
-    constexpr double failed = 0.5;  // of the largest loss factor
-    if (bin.loss < failed * largest) break;
-    largest = std::max(largest, bin.loss);
-    if (valid.empty()) all.first = ranges[k].first;
-    all.end = ranges[k].end;
-    valid.push_back(bin);
-  }
-  if (valid.empty()) return valid;
-  // The mean frequency is that of the bins, not of the record, because it rises where impacts fail (M16.5).
-  const double omega = half_turn<double>() *
-                       double(reduction.half_cycle[all.end - 1] - reduction.half_cycle[all.first]) /
-                       (reduction.time[all.end - 1] - reduction.time[all.first]);
-  for (LossBin& each : valid) each.loss /= omega;
-  return valid;
-}
-
-std::vector<double> log_losses(const HalfCycles& rows, double length, const std::vector<LossBin>& bins) {
-  constexpr std::size_t least_rows = 4;
-  const Vector logarithms = logarithms_of(rows.amplitude, length);
-  Vector losses;
-  const std::vector<RowRange> ranges = rows_of_bins(logarithms, bins);
-  for (auto [first, end] : ranges) {
-    if (end < first + least_rows) {  // after strong damping: neighbouring rows are used, too
-      first = first > 0 ? first - 1 : first;
-      end = first + least_rows;
-      if (end > logarithms.size()) break;
-    }
-    const Line line = line_through(std::span(rows.peak_time).subspan(first, end - first),
-                                   std::span(logarithms).subspan(first, end - first));
-    if (!(line.slope < 0)) break;
-    losses.push_back(-2 * line.slope);
-  }
-  if (losses.empty()) return losses;
-  // A bin above all of the decay has no rows: its end may be 0.
-  const std::size_t first = ranges.front().first,
-                    end = std::min(ranges[losses.size() - 1].end, logarithms.size());
-  if (end < first + 2) return {};
-  const double omega =
-      half_turn<double>() * double(end - 1 - first) / (rows.peak_time[end - 1] - rows.peak_time[first]);
-  for (double& each : losses) each = logarithm(each / omega);
-  return losses;
-}
-
-// --- Parameters -------------------------------------------------------------------------------------------
-
-std::string_view unit_of(FitParameter parameter) { return unit_of(field_of(parameter).dimension, true); }
-double value_of(const SceneInUnits& scene, FitParameter parameter) {
-  if (const auto& given = field_of(parameter).number.in(scene)) return *given;
-  const Scene made = dimensionless(scene);
-  return parameter == FitParameter::restitution ? made.damper().restitution : made.damping_ratio;
-}
-void set_value(SceneInUnits& scene, FitParameter parameter, double value) {
-  if (parameter == FitParameter::damping_ratio) scene.damping.reset();
-  field_of(parameter).number.in(scene) = value;
-}
-
-Scene decay_scene(const SceneInUnits& scene, const Reduction& reduction, double until, std::uint64_t seed,
-                  std::int64_t draw) {
-  constexpr double above = 1.1, below = 0.97, longer = 3;
-  constexpr std::uint32_t place_in_cavity = 100;  // a number that no axis has in a draw
-  SceneInUnits released = scene;
-  released.initial_displacement = above * reduction.amplitude.front();
-  released.initial_velocity.reset();
-  released.damper().secondary_velocity.reset();
-  released.damper().secondary_displacement.reset();
-  released.until_millimetres = below * until;
-  released.until_seconds = longer * (reduction.time.back() - reduction.time.front());
-  Scene made = dimensionless(released);
-  made.damper().y0 = uniform_draw({seed, place_in_cavity, draw});
-  return made;
-}
 
 // --- The fit ----------------------------------------------------------------------------------------------
 
@@ -592,68 +583,60 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
                               " ranges of amplitude with a known loss factor, the record has " +
                               std::to_string(bins.size())};
   FitResult none{std::nullopt, "no decay in the searched range passes through the record's amplitudes"};
-  Search search(scene, engine, reduction, bins, options, tell);
-  Box box{Vector(count, 0.0), Vector(count, 1.0)};
+  DecaySampler sampler{scene, engine, reduction, bins, options, tell};
+  for (const FitParameter each : options.parameters)
+    sampler.ranges.push_back(searched_range(each, scene, bins));
+  Region region{.box = {Vector(count, 0.0), Vector(count, 1.0)}, .before = {}, .limit = {}};
   // While the range is wide, no polynomial follows the loss factor. The box shrinks to the nearest runs
   // instead.
   constexpr int coarse_stages = 3, most_stages = 9;
   constexpr double kept = 0.1, generous = 16;  // chi square above its least: four standard deviations
   for (int stage = 0; stage < coarse_stages; ++stage) {
-    const Points points = search.points(box, options.runs, [](const Vector&) { return true; });
+    const Points points = sampler.points(region, options.runs);
     if (double(points.loss.size()) * kept < double(4 * count)) return none;
-    box = box_of_nearest(points, bins, box, kept);
+    region.box = box_of_nearest(points, bins, region.box, kept);
   }
-  // The polynomial of the previous stage decides at which points of the box decays are simulated.
-  std::optional<Emulator> emulator, before;
+  std::optional<Emulator> emulator;
   Profiles profiles;
-  std::optional<double> limit;
-  const auto is_near = [&](const Vector& place) { return !limit || before->chi_square(place) <= *limit; };
   const auto refine = [&](std::int64_t runs) {
-    emulator = Emulator::fitted(search.points(box, runs, is_near), box, bins);
+    emulator = Emulator::fitted(sampler.points(region, runs), region.box, bins);
     if (!emulator) return false;
-    profiles = profiles_of(*emulator, box, nodes, is_near);
+    profiles = profiles_of(*emulator, region, nodes);
     return !profiles.best.empty();
   };
   // The misfit of the polynomial counts as scatter and may keep the box from shrinking. The half of the box
   // about the best point is then tried, and the search goes on there if the scatter is less.
-  struct Stopped {
-    Box box;
-    std::optional<Emulator> before;
-    std::optional<double> limit;
-  };
-  std::optional<Stopped> stopped;
+  std::optional<Region> stopped;
   for (int stage = 0; stage < most_stages; ++stage) {
     if (!refine(options.runs)) return none;
     if (stopped && !is_less(emulator->scatter, stopped->before->scatter)) break;
     stopped.reset();
+    const Box& box = region.box;
     const Narrowed next = narrowed(profiles, box, profiles.least + generous);
     double part = 0;
     for (std::size_t j = 0; j < count; ++j)
       part = std::max(part, 1 - (next.box.high[j] - next.box.low[j]) / (box.high[j] - box.low[j]));
-    box = next.box;
-    before = emulator;
-    limit = profiles.least + generous;
-    if (next.was_too_small) limit.reset();
+    region = {next.box, emulator, profiles.least + generous};
+    if (next.was_too_small) region.limit.reset();
     constexpr double little = 0.2;
     if (!next.was_too_small && part < little) {
-      stopped = Stopped{box, before, limit};
-      box = half_about(profiles.best, box);
+      stopped = region;
+      region.box = half_about(profiles.best, region.box);
     }
   }
-  if (stopped) box = stopped->box, before = stopped->before, limit = stopped->limit;
+  if (stopped) region = *stopped;
   if (!refine(2 * options.runs)) return none;
 
   DecayFit fit;
   for (std::size_t j = 0; j < count; ++j) {
-    const Axis& axis = search.axes[j];
+    const SearchedRange& range = sampler.ranges[j];
     const Interval interval = interval_of(profiles.of[j], profiles.least + options.level);
-    const auto at = [&](double part) { return axis.value(box.low[j] + (box.high[j] - box.low[j]) * part); };
-    fit.parameters.push_back({.parameter = axis.parameter,
-                              .best = axis.value(profiles.best[j]),
-                              .low = at(interval.low),
-                              .high = at(interval.high),
-                              .searched_from = axis.value(0),
-                              .searched_to = axis.value(1),
+    fit.parameters.push_back({.parameter = range.parameter,
+                              .best = range.value(profiles.best[j]),
+                              .low = range.value(region.box.at(j, interval.low)),
+                              .high = range.value(region.box.at(j, interval.high)),
+                              .searched_from = range.value(0),
+                              .searched_to = range.value(1),
                               .open_below = interval.reaches_low,
                               .open_above = interval.reaches_high});
   }
@@ -668,7 +651,7 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
                                     3) -
                         (1 - ninth)) /
                        std::sqrt(ninth);
-  fit.runs = search.runs;
+  fit.runs = sampler.runs;
   return {fit, {}};
 }
 

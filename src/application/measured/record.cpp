@@ -4,11 +4,12 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <utility>
+#include <span>
 
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/text.hpp"
+#include "impact_damper/io/csv.hpp"
 #include "impact_damper/io/json_reader.hpp"
 
 namespace impact_damper {
@@ -33,74 +34,23 @@ constexpr std::size_t most_problems = 10;
 
 class Problems {
  public:
-  explicit Problems(std::string name) : name_(std::move(name)) {}
   void add(std::size_t line, const std::string& what) {
-    if (++count_ <= most_problems) lines_.push_back(name_ + ": line " + std::to_string(line) + ": " + what);
+    if (++count_ <= most_problems) first_.push_back({"line " + std::to_string(line), what});
   }
-  void add(const std::string& what) {
-    ++count_;
-    lines_.push_back(name_ + ": " + what);
-  }
-  bool any() const { return count_ > 0; }
-  void throw_if_any() {
+  void throw_if_any(const std::string& file) {
     if (count_ == 0) return;
-    if (count_ > lines_.size())
-      lines_.push_back(name_ + ": and " + std::to_string(count_ - lines_.size()) +
-                       " more lines that are not valid");
-    throw InputError(lines_);
+    if (count_ > most_problems)
+      first_.push_back(
+          {"", "and " + std::to_string(count_ - most_problems) + " more lines that are not valid"});
+    throw InputError(file, first_);
   }
 
  private:
-  std::string name_;
-  std::vector<std::string> lines_;
+  std::vector<Problem> first_;
   std::size_t count_ = 0;
 };
 
-// Reads the rows of a CSV text one by one. A quoted cell may contain commas and ends of line.
-class Rows {
- public:
-  explicit Rows(std::string_view text) : text_(text) {}
-  // Reads the cells of the next row; false at the end. `line` is where the row begins, from 1.
-  bool next(std::vector<std::string>& cells, std::size_t& line) {
-    cells.clear();
-    line = line_;
-    if (at_ >= text_.size()) return false;
-    std::string cell;
-    bool quoted = false;
-    for (; at_ < text_.size(); ++at_) {
-      const char c = text_[at_];
-      line_ += c == '\n';
-      if (quoted) {
-        if (c != '"') {
-          cell += c;
-        } else if (at_ + 1 < text_.size() && text_[at_ + 1] == '"') {
-          cell += text_[++at_];
-        } else {
-          quoted = false;
-        }
-      } else if (c == '"' && cell.empty()) {
-        quoted = true;
-      } else if (c == ',') {
-        cells.push_back(std::move(cell));
-        cell.clear();
-      } else if (c == '\n') {
-        ++at_;
-        break;
-      } else if (!(c == '\r' && (at_ + 1 == text_.size() || text_[at_ + 1] == '\n'))) {
-        cell += c;
-      }
-    }
-    cells.push_back(std::move(cell));
-    return true;
-  }
-
- private:
-  std::string_view text_;
-  std::size_t at_ = 0, line_ = 1;
-};
-
-template <std::size_t Count>
-const Unit* unit_of(const std::array<Unit, Count>& units, const std::string& heading, Problems& problems) {
+const Unit* unit_of(std::span<const Unit> units, const std::string& heading, Problems& problems) {
   const auto found = std::ranges::find(units, std::string_view(heading), &Unit::heading);
   if (found != units.end()) return &*found;
   std::vector<std::string_view> known(units.size());
@@ -124,19 +74,18 @@ MeasuredRecord read_measured_record(const std::filesystem::path& file) {
 MeasuredRecord parse_measured_record(const std::string& name, std::string_view text) {
   constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
   if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
-  Problems problems(name);
-  Rows rows(text);
+  Problems problems;
+  CsvRows rows(text);
   std::vector<std::string> cells;
-  std::size_t line = 0;
   MeasuredRecord record;
-  if (!rows.next(cells, line) || cells.size() != 2) {
+  if (!rows.next(cells) || cells.size() != 2) {
     problems.add(1, "must head two columns with their units, as in \"t_s,x_mm\", got " +
                         in_quotes(text.substr(0, text.find('\n'))));
-    problems.throw_if_any();
+    problems.throw_if_any(name);
   }
   const Unit* const time_unit = unit_of(time_units, cells[0], problems);
   const Unit* const value_unit = unit_of(value_units, cells[1], problems);
-  problems.throw_if_any();
+  problems.throw_if_any(name);
   record.quantity = value_unit->quantity;
   const auto limit = [&problems](std::size_t where, const Unit& unit, const std::optional<double>& number) {
     if (number && !(std::abs(*number * unit.factor) <= largest))
@@ -145,25 +94,26 @@ MeasuredRecord parse_measured_record(const std::string& name, std::string_view t
                               number_text(*number));
   };
   std::optional<double> last;
-  while (rows.next(cells, line)) {
+  while (rows.next(cells)) {
     if (cells.size() == 1 && cells[0].empty()) continue;  // an empty line
     if (cells.size() != 2) {
-      problems.add(line, "must have 2 cells, got " + std::to_string(cells.size()));
+      problems.add(rows.line(), "must have 2 cells, got " + std::to_string(cells.size()));
       continue;
     }
     const auto time = parse_number(cells[0]), value = parse_number(cells[1]);
     if (!time)
-      problems.add(line, std::string(time_unit->heading) + " must be a number, got " + in_quotes(cells[0]));
+      problems.add(rows.line(),
+                   std::string(time_unit->heading) + " must be a number, got " + in_quotes(cells[0]));
     if (!value && !cells[1].empty())
-      problems.add(line, std::string(value_unit->heading) +
-                             " must be a number, or empty where a sample is missing, got " +
-                             in_quotes(cells[1]));
-    limit(line, *time_unit, time);
-    limit(line, *value_unit, value);
+      problems.add(rows.line(), std::string(value_unit->heading) +
+                                    " must be a number, or empty where a sample is missing, got " +
+                                    in_quotes(cells[1]));
+    limit(rows.line(), *time_unit, time);
+    limit(rows.line(), *value_unit, value);
     if (!time) continue;
     if (last && !(*time * time_unit->factor > *last * time_unit->factor))
-      problems.add(line, std::string(time_unit->heading) + " must be larger than in the row before, " +
-                             number_text(*last) + ", got " + number_text(*time));
+      problems.add(rows.line(), std::string(time_unit->heading) + " must be larger than in the row before, " +
+                                    number_text(*last) + ", got " + number_text(*time));
     last = time;
     if (!value) {
       ++record.empty_cells;
@@ -172,10 +122,10 @@ MeasuredRecord parse_measured_record(const std::string& name, std::string_view t
     record.time.push_back(*time * time_unit->factor);
     record.value.push_back(*value * value_unit->factor);
   }
-  if (!problems.any() && record.time.size() < least_samples)
-    problems.add("must have at least " + std::to_string(least_samples) + " samples, got " +
-                 std::to_string(record.time.size()));
-  problems.throw_if_any();
+  problems.throw_if_any(name);
+  if (record.time.size() < least_samples)
+    throw InputError(name, {{"", "must have at least " + std::to_string(least_samples) + " samples, got " +
+                                     std::to_string(record.time.size())}});
   return record;
 }
 

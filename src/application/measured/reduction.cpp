@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <utility>
@@ -16,6 +17,13 @@
 namespace impact_damper {
 namespace {
 
+constexpr double half_window = std::numbers::pi / 4;  // half width of a fit's window, rad of the oscillation
+constexpr double least_covered = 0.75;                // samples in a window divided by those that fit into it
+constexpr double least_curvature = 0.5;  // divided by a sinusoid's: below it a peak is flat, as if clipped
+constexpr double outlier = 5;            // a sample with a larger studentised residual is left out
+constexpr double end_in_noise = 5;       // the decay ends at the first amplitude below this multiple of it
+constexpr std::size_t least_window = 5;  // samples in a window
+constexpr std::size_t least_half_cycles = 12;     // in a decay
 constexpr double to_standard_deviation = 1.4826;  // of a normal distribution, divided by its median deviation
 
 double median_of(std::vector<double> values) {
@@ -119,20 +127,24 @@ struct Samples {
   double step = 0;  // the median
 };
 
+// Returns the range of those of ascending times that are within `reach` of `centre`.
+IndexRange range_about(std::span<const double> time, double centre, double reach) {
+  return {std::size_t(std::ranges::lower_bound(time, centre - reach) - time.begin()),
+          std::size_t(std::ranges::upper_bound(time, centre + reach) - time.begin())};
+}
+
 PeakFit fitted_peak(const Samples& samples, double centre, double omega, bool is_maximum,
-                    const ReductionOptions& options, bool removes_outliers = true) {
+                    bool removes_outliers = true) {
   constexpr int rounds = 5;  // at most, to move the centre to the peak
   PeakFit peak;
   peak.time = centre;
-  const double reach = options.half_window / omega, sign = is_maximum ? 1 : -1;
+  const double reach = half_window / omega, sign = is_maximum ? 1 : -1;
   for (int round = 0; round < rounds; ++round) {
-    const auto from = std::ranges::lower_bound(samples.time, peak.time - reach) - samples.time.begin();
-    const auto to = std::ranges::upper_bound(samples.time, peak.time + reach) - samples.time.begin();
-    const std::size_t first = std::size_t(from), last = std::size_t(to), count = last - first;
+    const auto [first, end] = range_about(samples.time, peak.time, reach);
+    const std::size_t count = end - first;
     const double expected = 2 * reach / samples.step;
-    peak.is_covered = count >= options.least_window &&
-                      double(count) >= options.least_covered * std::floor(expected) && first > 0 &&
-                      last < samples.time.size();
+    peak.is_covered = count >= least_window && double(count) >= least_covered * std::floor(expected) &&
+                      first > 0 && end < samples.time.size();
     if (!peak.is_covered) return peak;
     std::vector<std::array<double, 3>> basis(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -173,7 +185,7 @@ PeakFit fitted_peak(const Samples& samples, double centre, double omega, bool is
         if (share > worst) worst = share, at = i;
       }
       // Squares of the studentised residual and of its limit, times the variance of the others.
-      if (at == count || worst <= options.outlier * options.outlier * (sum - worst) / double(left - 4)) break;
+      if (at == count || worst <= outlier * outlier * (sum - worst) / double(left - 4)) break;
       used[at] = false;
       --left;
     }
@@ -184,7 +196,7 @@ PeakFit fitted_peak(const Samples& samples, double centre, double omega, bool is
     peak.value_factor = std::sqrt(solution->inverse[0][0]);
     peak.curvature_factor = std::sqrt(solution->inverse[1][1]);
     const double phase = a * sign > 0 ? angle_of(b * sign, a * sign) : 0;
-    peak.is_single = a * sign > 0 && std::abs(phase) <= options.half_window;
+    peak.is_single = a * sign > 0 && std::abs(phase) <= half_window;
     constexpr double close = 1e-6;
     if (!peak.is_single || std::abs(phase) < close || round + 1 == rounds) break;
     peak.time += phase / omega;
@@ -211,9 +223,10 @@ class Limits {
         if (value[i] == limit) at_limit_[i] = true;
     }
   }
-  bool any(std::size_t first, std::size_t last) const {
-    return std::find(at_limit_.begin() + std::ptrdiff_t(first), at_limit_.begin() + std::ptrdiff_t(last),
-                     true) != at_limit_.begin() + std::ptrdiff_t(last);
+  bool any(const IndexRange& range) const {
+    const auto begin = at_limit_.begin() + std::ptrdiff_t(range.first);
+    return std::find(begin, begin + std::ptrdiff_t(range.size()), true) !=
+           begin + std::ptrdiff_t(range.size());
   }
 
  private:
@@ -274,34 +287,31 @@ void find_middle_line(std::vector<Candidate>& all) {
   }
   for (const std::size_t index : good) {
     Candidate& here = all[index];
-    const double span = reach * here.half_cycle;
-    const auto from = std::ranges::lower_bound(time, here.fit.time - span) - time.begin(),
-               to = std::ranges::upper_bound(time, here.fit.time + span) - time.begin();
-    if (to - from < 1) {
+    const auto [first, end] = range_about(time, here.fit.time, reach * here.half_cycle);
+    if (first == end) {
       here.kind = Kind::unclear;
       continue;
     }
-    const auto first = std::size_t(from), last = std::size_t(to);
-    const double count = double(last - first);
+    const double count = double(end - first);
     double mean_time = 0, mean = 0, squares = 0, products = 0;
-    for (std::size_t i = first; i < last; ++i)
+    for (std::size_t i = first; i < end; ++i)
       mean_time += (time[i] - here.fit.time) / count, mean += middle[i] / count;
-    for (std::size_t i = first; i < last; ++i) {
+    for (std::size_t i = first; i < end; ++i) {
       const double t = time[i] - here.fit.time - mean_time;
       squares += t * t;
       products += t * (middle[i] - mean);
     }
-    here.middle = mean - (last - first >= least_line ? products / squares * mean_time : 0);
+    here.middle = mean - (end - first >= least_line ? products / squares * mean_time : 0);
     here.amplitude = std::abs(here.fit.value - here.middle);
   }
 }
 
 }  // namespace
 
-Reduction reduced(const std::string& name, const MeasuredRecord& record, const ReductionOptions& options) {
+Reduction reduced(const std::string& name, const MeasuredRecord& record) {
   Reduction result;
   const std::vector<double>&time = record.time, &value = record.value;
-  const auto reject = [&](const std::string& what) { throw InputError(std::vector{name + ": " + what}); };
+  const auto reject = [&](const std::string& what) { throw InputError(name, {{"", what}}); };
   if (time.size() < least_samples)
     reject("must have at least " + std::to_string(least_samples) + " samples, got " +
            std::to_string(time.size()));
@@ -315,10 +325,12 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record, const R
   constexpr double above_noise = 5;
   const std::vector<Extreme> extremes =
       extremes_of(time, without_spikes(value), above_noise * rough_noise(value));
-  const std::string needed = std::to_string(options.least_half_cycles);
-  if (extremes.size() < options.least_half_cycles)
-    reject("must hold a free decay of at least " + needed + " half cycles above the noise, got " +
-           std::to_string(extremes.size()));
+  const auto require_half_cycles = [&](std::size_t count, const std::string& others) {
+    if (count < least_half_cycles)
+      reject("must hold a free decay of at least " + std::to_string(least_half_cycles) +
+             " half cycles above the noise, got " + std::to_string(count) + others);
+  };
+  require_half_cycles(extremes.size(), "");
 
   // A half cycle lasts as long as the median of those around it, which a gap or a false extreme hardly
   // changes.
@@ -330,7 +342,7 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record, const R
     const std::size_t first = i < around ? 0 : i - around, last = std::min(i + around, intervals.size());
     return median_of({intervals.begin() + std::ptrdiff_t(first), intervals.begin() + std::ptrdiff_t(last)});
   };
-  const double least_per_cycle = double(options.least_window) * half_turn<double>() / options.half_window;
+  const double least_per_cycle = double(least_window) * half_turn<double>() / half_window;
   if (!(2 * median_of(intervals) / step >= least_per_cycle))
     reject("must have at least " + number_text(std::ceil(least_per_cycle)) + " samples in a cycle, got " +
            rounded_text(2 * median_of(intervals) / step, 3));
@@ -343,11 +355,8 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record, const R
     candidate.is_maximum = extremes[i].is_maximum;
     candidate.half_cycle = local(i);
     const double omega = half_turn<double>() / candidate.half_cycle, at = time[extremes[i].index];
-    candidate.fit = fitted_peak(samples, at, omega, candidate.is_maximum, options);
-    const double reach = options.half_window / omega;
-    const auto first = std::size_t(std::ranges::lower_bound(time, at - reach) - time.begin()),
-               last = std::size_t(std::ranges::upper_bound(time, at + reach) - time.begin());
-    if (limits.any(first, last)) {
+    candidate.fit = fitted_peak(samples, at, omega, candidate.is_maximum);
+    if (limits.any(range_about(time, at, half_window / omega))) {
       candidate.kind = Kind::clipped;
     } else if (!candidate.fit.is_covered) {
       candidate.kind = Kind::in_gap;
@@ -367,7 +376,7 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record, const R
                  after = i + 1 < all.size() ? value[extremes[i + 1].index] : before;
     const double swing = std::abs(value[extremes[i].index] - (before + after) / 2) / 2;
     const double curvature = each.is_maximum ? each.fit.curvature : -each.fit.curvature;
-    if (curvature + 3 * result.noise * each.fit.curvature_factor < options.least_curvature * swing) {
+    if (curvature + 3 * result.noise * each.fit.curvature_factor < least_curvature * swing) {
       each.kind = Kind::clipped;
     } else if (!each.fit.is_single) {
       each.kind = Kind::unclear;
@@ -380,7 +389,7 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record, const R
   std::vector<const Candidate*> good;
   for (Candidate& each : all) {
     if (each.kind == Kind::good) {
-      if (each.amplitude < options.noise_multiple * result.noise) {
+      if (each.amplitude < end_in_noise * result.noise) {
         result.ends_in_noise = true;
         break;
       }
@@ -398,11 +407,10 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record, const R
     result.in_gaps += each.kind == Kind::in_gap;
     result.unclear += each.kind == Kind::unclear;
   }
-  if (good.size() < options.least_half_cycles)
-    reject("must hold a free decay of at least " + needed + " half cycles above the noise, got " +
-           std::to_string(good.size()) + " (" + std::to_string(result.clipped) + " clipped or flat, " +
-           std::to_string(result.in_gaps) + " at its ends or with samples missing, " +
-           std::to_string(result.unclear) + " unclear)");
+  require_half_cycles(good.size(), " (" + std::to_string(result.clipped) + " clipped or flat, " +
+                                       std::to_string(result.in_gaps) +
+                                       " at its ends or with samples missing, " +
+                                       std::to_string(result.unclear) + " unclear)");
   const double turns = double(good.back()->number - good.front()->number);
   result.frequency = turns / 2 / (good.back()->fit.time - good.front()->fit.time);
   // Adds the half cycles within gaps in which no extreme was found.
@@ -435,16 +443,7 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record, const R
   return result;
 }
 
-HalfCycles half_cycles_of(const Reduction& reduction, double length, double time) {
-  HalfCycles rows;
-  for (std::size_t i = 0; i < reduction.time.size(); ++i) {
-    rows.peak_time.push_back(reduction.time[i] / time);
-    rows.amplitude.push_back(reduction.amplitude[i] / length);
-  }
-  return rows;
-}
-
-HalfCycles simulated_half_cycles(const Scene& scene, const Engine& engine, const ReductionOptions& options) {
+HalfCycles simulated_half_cycles(const Scene& scene, const Engine& engine) {
   if (!scene.until_time) throw InvalidArguments(std::vector<Problem>{{"until_time", "must be given"}});
   constexpr double samples_per_cycle = 32;
   const double step = 2 * half_turn<double>() / samples_per_cycle;
@@ -461,7 +460,7 @@ HalfCycles simulated_half_cycles(const Scene& scene, const Engine& engine, const
     const double half_cycle = (rows.peak_time[after] - rows.peak_time[before]) / double(after - before);
     if (!(half_cycle > 0)) continue;
     const PeakFit peak =
-        fitted_peak(samples, rows.peak_time[i], half_turn<double>() / half_cycle, i % 2 == 0, options, false);
+        fitted_peak(samples, rows.peak_time[i], half_turn<double>() / half_cycle, i % 2 == 0, false);
     const bool is_valid = peak.is_covered && peak.is_single;
     fitted.peak_time.push_back(is_valid ? peak.time : rows.peak_time[i]);
     fitted.amplitude.push_back(is_valid ? std::abs(peak.value) : rows.amplitude[i]);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -11,15 +10,10 @@
 
 namespace impact_damper {
 
-// Thresholds of the reduction.
-struct ReductionOptions {
-  double half_window = std::numbers::pi / 4;  // half width of a fit's window, rad of the oscillation
-  double least_covered = 0.75;                // samples in a window divided by those that fit into it
-  double least_curvature = 0.5;  // below this fraction of a sinusoid's curvature a peak is flat: clipped
-  double outlier = 5;            // a sample with a larger residual, studentised by the others, is left out
-  double noise_multiple = 5;     // the decay ends at the first amplitude below this multiple of the noise
-  std::size_t least_window = 5;  // least number of samples in a window
-  std::size_t least_half_cycles = 12;  // least number of half cycles in a decay
+// Samples or half cycles in a row: from `first` to the one before `end`.
+struct IndexRange {
+  std::size_t first = 0, end = 0;
+  std::size_t size() const { return end - first; }
 };
 
 // The half cycles that are used, in the order of time, and how many were left out.
@@ -43,20 +37,13 @@ struct Reduction {
 };
 
 // Returns the half cycles of a record. Throws InputError, naming `name`, if there are fewer than
-// least_samples samples (record.hpp), fewer than least_half_cycles half cycles that are used, or too few
-// samples in each.
-Reduction reduced(const std::string& name, const MeasuredRecord& record,
-                  const ReductionOptions& options = {});
-
-// Returns the peaks as rows for local_loss_factor (M12.1): amplitudes in units of `length` mm, times in units
-// of `time` s. Columns of zero crossings and impacts stay empty.
-HalfCycles half_cycles_of(const Reduction& reduction, double length, double time);
+// least_samples samples (record.hpp), fewer than 12 half cycles that are used, or too few samples in each.
+Reduction reduced(const std::string& name, const MeasuredRecord& record);
 
 // Simulates a free decay with x0 > 0 and returns its peaks by the fit used for records, so that an impact
 // near a peak has the same effect on both. Row 0, which is less than a half cycle, is left out. At most
 // most_samples samples are fitted; later peaks are the engine's own. Throws InvalidArguments without
 // until_time.
-HalfCycles simulated_half_cycles(const Scene& scene, const Engine& engine,
-                                 const ReductionOptions& options = {});
+HalfCycles simulated_half_cycles(const Scene& scene, const Engine& engine);
 
 }  // namespace impact_damper

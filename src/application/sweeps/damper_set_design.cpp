@@ -1,13 +1,9 @@
 #include "application/sweeps/damper_set_design.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <limits>
-#include <memory>
-#include <numeric>
 #include <optional>
-#include <stdexcept>
 
 #include "application/sweeps/sampling.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
@@ -82,13 +78,11 @@ Bounds bounds_of(const DamperSetQuestion& question) {
   return {fold, most, std::min(question.to, most * fold)};
 }
 
-double rounded(double value, int digits) { return *parse_number(rounded_text(value, digits)); }
-
 std::vector<double> clearances_between(double least, double most, std::int64_t count) {
   std::vector<double> clearances;
   for (std::int64_t j = 0; j < count; ++j)
     clearances.push_back(
-        rounded(count == 1 ? least : most * power_of(least / most, double(j) / double(count - 1)), 3));
+        rounded_to(count == 1 ? least : most * power_of(least / most, double(j) / double(count - 1)), 3));
   return clearances;
 }
 
@@ -135,7 +129,7 @@ std::vector<SceneDamper> dampers_of(const DamperSetQuestion& question, const Cle
     sum += shares[j];
   }
   for (SceneDamper& damper : dampers)
-    damper.mass_ratio = question.mass_ratio * rounded(damper.mass_ratio / sum, 3);
+    damper.mass_ratio = question.mass_ratio * rounded_to(damper.mass_ratio / sum, 3);
   return dampers;
 }
 
@@ -308,7 +302,7 @@ Scene scene_of_set(const DamperSetQuestion& question, const std::vector<SceneDam
 
 DamperSet best_damper_set(const DamperSetQuestion& question, const Threads& threads,
                           const std::function<void(const std::string& doing)>& tell) {
-  if (auto problems = problems_of(question); !problems.empty()) throw InvalidArguments(std::move(problems));
+  require_none(problems_of(question));
   DamperSet set = best_by_runs(question, threads, tell);
   tell("dampers that are off");
   set.varied =

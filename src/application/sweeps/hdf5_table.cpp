@@ -1,7 +1,6 @@
-#include "application/sweeps/hdf5_table.hpp"
-
 #include <algorithm>
 
+#include "application/sweeps/sweep_table.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/text.hpp"
 
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "impact_damper/base/number_text.hpp"
+#include "impact_damper/io/csv.hpp"
 #endif
 
 namespace impact_damper {
@@ -26,13 +26,10 @@ bool is_hdf5(const std::filesystem::path& table) {
 #ifndef IMPACT_DAMPER_HDF5
 
 bool has_hdf5() { return false; }
-struct Hdf5Table::File {};
-Hdf5Table::Hdf5Table(const std::filesystem::path& file, const Plan&) {
+void write_hdf5_table(const std::filesystem::path& file, const Plan&,
+                      const std::function<void(const AddRows&)>&) {
   throw IoError(file.string() + ": cannot be written: the program was built without the HDF5 library");
 }
-Hdf5Table::~Hdf5Table() = default;
-void Hdf5Table::add(std::string_view) {}
-void Hdf5Table::finish() {}
 
 #else
 
@@ -41,24 +38,6 @@ bool has_hdf5() { return true; }
 namespace {
 
 constexpr hsize_t rows_at_once = 4096;  // collected before they are written
-
-// Returns the next field of a row, without its quotes, and reduces `row` to what follows.
-std::string next_field(std::string_view& row) {
-  std::string field;
-  bool quoted = false;
-  std::size_t i = 0;
-  for (; i < row.size() && (quoted || row[i] != ','); ++i) {
-    if (row[i] != '"') {
-      field += row[i];
-    } else if (quoted && i + 1 < row.size() && row[i + 1] == '"') {
-      field += row[++i];
-    } else {
-      quoted = !quoted;
-    }
-  }
-  row.remove_prefix(std::min(row.size(), i + 1));
-  return field;
-}
 
 H5::StrType text_type() {
   H5::StrType type(H5::PredType::C_S1, H5T_VARIABLE);
@@ -91,19 +70,13 @@ struct Column {
   }
 };
 
-}  // namespace
-
-struct Hdf5Table::File {
-  std::string name;
+struct Hdf5Table {
   H5::H5File file;
   std::vector<Column> columns;
+  std::vector<std::string> cells;  // of a row
   hsize_t written = 0, waiting = 0;
 
-  static H5::H5File made(const std::string& name) {
-    H5::Exception::dontPrint();
-    return {name, H5F_ACC_TRUNC};
-  }
-  File(const std::filesystem::path& path, const Plan& plan) : name(path.string()), file(made(name)) {
+  Hdf5Table(const std::string& name, const Plan& plan) : file(name, H5F_ACC_TRUNC) {
     const auto rows = hsize_t(runs_of(plan));
     const H5::DataSpace space(1, &rows);
     const H5::DSetCreatPropList timeless;  // otherwise no two files would be equal
@@ -120,8 +93,9 @@ struct Hdf5Table::File {
   }
 
   void add(std::string_view row) {
+    CsvRows(row).next(cells);
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      const std::string field = next_field(row);
+      const std::string& field = cells[i];
       if (i == 0) {
         columns[i].indices.push_back(parse_integer(field).value());
       } else if (i + 2 < columns.size()) {
@@ -140,40 +114,28 @@ struct Hdf5Table::File {
     written += waiting;
     waiting = 0;
   }
-
-  // Replaces the library's message about a failure, which tells users little.
-  template <class Act>
-  static void guarded(const std::string& name, Act act) {
-    try {
-      act();
-    } catch (const H5::Exception&) {
-      throw IoError(name + ": cannot be written by the HDF5 library: is its disk full?");
-    }
-  }
 };
 
-Hdf5Table::Hdf5Table(const std::filesystem::path& file, const Plan& plan) {
-  File::guarded(file.string(), [&] { file_ = std::make_unique<File>(file, plan); });
-}
+}  // namespace
 
-Hdf5Table::~Hdf5Table() = default;
-
-void Hdf5Table::add(std::string_view rows) {
-  File::guarded(file_->name, [&] {
-    while (!rows.empty()) {
-      const std::size_t end = rows.find('\n');
-      file_->add(rows.substr(0, end));
-      rows.remove_prefix(end + 1);
-    }
-  });
-}
-
-void Hdf5Table::finish() {
-  File::guarded(file_->name, [&] {
-    file_->write();
-    file_->columns.clear();
-    file_->file.close();
-  });
+void write_hdf5_table(const std::filesystem::path& file, const Plan& plan,
+                      const std::function<void(const AddRows&)>& produce) {
+  H5::Exception::dontPrint();
+  try {
+    Hdf5Table table(file.string(), plan);
+    produce([&](std::string_view rows) {
+      while (!rows.empty()) {
+        const std::size_t end = rows.find('\n');
+        table.add(rows.substr(0, end));
+        rows.remove_prefix(end + 1);
+      }
+    });
+    table.write();
+    table.columns.clear();
+    table.file.close();
+  } catch (const H5::Exception&) {  // whose message says little to users
+    throw IoError(file.string() + ": cannot be written by the HDF5 library: is its disk full?");
+  }
 }
 
 #endif

@@ -36,32 +36,32 @@ class RunFindings {
     if (!loss_) loss_ = scene.force_amplitude == 0 ? loss_before_failure(run()) : LossFactor{};
     return *loss_;
   }
-  // Its row of the largest loss factor, if that is > 0.
-  std::optional<std::size_t> best_row() {
-    const std::vector<double>& eta = loss().eta;
-    const auto best = std::ranges::max_element(eta);
+  // The largest loss factor and its amplitude, if it is > 0.
+  struct Peak {
+    double amplitude = 0, loss = 0;
+  };
+  std::optional<Peak> largest_loss() {
+    const auto best = std::ranges::max_element(loss().eta);
     // Without losses energy only goes to and fro.
     const auto keeps_speed = [](const auto& damper) { return damper.restitution == 1; };
     const bool is_lossless = scene.damping_ratio == 0 && std::ranges::all_of(scene.dampers, keeps_speed);
-    if (is_lossless || best == eta.end() || !(*best > 0)) return std::nullopt;
-    return static_cast<std::size_t>(best - eta.begin());
+    if (is_lossless || best == loss().eta.end() || !(*best > 0)) return std::nullopt;
+    return Peak{loss().amplitude[static_cast<std::size_t>(best - loss().eta.begin())], *best};
   }
   // Absent where a budget ended it, or where it is still growing or decaying.
   const std::optional<SteadyState>& steady() {
-    if (!steady_is_known_) {
-      steady_ = ForcedScene(scene, engine).settle(release_of(scene), rules_.steady);
-      if (!note_whether_steady(*steady_)) steady_.reset();
+    if (!steady_) {
+      steady_.emplace(ForcedScene(scene, engine).settle(release_of(scene), rules_.steady));
+      if (!note_whether_steady(**steady_)) steady_->reset();
     }
-    steady_is_known_ = true;
-    return steady_;
+    return *steady_;
   }
   struct Worst {
     double frequency = 0, amplitude = 0;
   };
   const std::optional<Worst>& worst() {
-    if (!worst_is_known_) find_worst();
-    worst_is_known_ = true;
-    return worst_;
+    if (!worst_) worst_.emplace(found_worst());
+    return *worst_;
   }
   const LyapunovExponents& exponents() {
     if (!exponents_) {
@@ -86,24 +86,25 @@ class RunFindings {
     if (state.means && !is_steady) note_end("not_steady");
     return is_steady;
   }
-  void find_worst() {
+  std::optional<Worst> found_worst() {
     const FrequencyRange range = rules_.frequencies.value_or(FrequencyRange{});
     const double unit = scale_of(Dimension::frequency, scales_);
     const Axis axis{&Scene::force_frequency, range.from / unit, range.to / unit, range.count};
     const auto sweeps =
         sweep(scene, engine, axis, rules_.steady, {release_of(scene)}, Threads{1}, [](std::int64_t) {});
+    std::optional<Worst> worst;
     bool all_steady = true;
     for (const auto* way : {&sweeps[0].up, &sweeps[0].down}) {
       for (std::size_t i = 0; i < way->size(); ++i) {
         const SteadyState& state = (*way)[i];
         if (!note_whether_steady(state)) {
           all_steady = false;
-        } else if (!(worst_ && state.means->amplitude <= worst_->amplitude)) {
-          worst_ = {axis.value(std::int64_t(i)), state.means->amplitude};
+        } else if (!(worst && state.means->amplitude <= worst->amplitude)) {
+          worst = {axis.value(std::int64_t(i)), state.means->amplitude};
         }
       }
     }
-    if (!all_steady) worst_.reset();  // the one that is not may be the worst
+    return all_steady ? worst : std::nullopt;  // the one that is not may be the worst
   }
 
   const ForcedRules& rules_;
@@ -111,10 +112,8 @@ class RunFindings {
   const Record& record_;
   std::optional<Run> run_;
   std::optional<LossFactor> loss_;
-  bool steady_is_known_ = false;
-  std::optional<SteadyState> steady_;
-  bool worst_is_known_ = false;
-  std::optional<Worst> worst_;
+  std::optional<std::optional<SteadyState>> steady_;  // absent as long as nothing asked for it, as the next
+  std::optional<std::optional<Worst>> worst_;
   std::optional<LyapunovExponents> exponents_;
   std::string_view end_ = "done";
 };
@@ -123,7 +122,12 @@ namespace {
 
 using Number = std::optional<double>;
 
-Number time_to_amplitude(RunFindings& found, double amplitude) { return time_below(found.run(), amplitude); }
+// Returns one of the numbers that find() returns together, if it returns any.
+template <auto find, auto number>
+Number one_of(RunFindings& found, double) {
+  const auto& all = (found.*find)();
+  return all ? Number((*all).*number) : std::nullopt;
+}
 
 // (M15.5).
 Number loss_factor_at(RunFindings& found, double amplitude) {
@@ -135,33 +139,15 @@ Number loss_factor_at(RunFindings& found, double amplitude) {
   return loss.eta[i] + (loss.eta[i - 1] - loss.eta[i]) * part;
 }
 
-Number largest_loss_factor(RunFindings& found, double) {
-  const auto best = found.best_row();
-  if (!best) return std::nullopt;
-  return found.loss().eta[*best];
-}
-
-Number amplitude_of_largest_loss_factor(RunFindings& found, double) {
-  const auto best = found.best_row();
-  if (!best) return std::nullopt;
-  return found.loss().amplitude[*best];
-}
-
 // Among the amplitudes whose loss factor is above the bound.
 template <class Better>
-Number extreme_amplitude(RunFindings& found, double bound, Better better) {
+Number extreme_amplitude(RunFindings& found, double bound) {
   const LossFactor& loss = found.loss();
   Number extreme;
   for (std::size_t i = 0; i < loss.eta.size(); ++i)
-    if (loss.eta[i] > bound && !(extreme && !better(loss.amplitude[i], *extreme)))
+    if (loss.eta[i] > bound && !(extreme && !Better()(loss.amplitude[i], *extreme)))
       extreme = loss.amplitude[i];
   return extreme;
-}
-Number lowest_amplitude_above_loss(RunFindings& found, double bound) {
-  return extreme_amplitude(found, bound, std::less<>());
-}
-Number highest_amplitude_above_loss(RunFindings& found, double bound) {
-  return extreme_amplitude(found, bound, std::greater<>());
 }
 
 Number impacts(RunFindings& found, double) {
@@ -207,38 +193,6 @@ Number impact_energy_share(RunFindings& found, double) {
   return impacts / all;
 }
 
-Number steady_amplitude_of(RunFindings& found, double) {
-  if (!found.steady()) return std::nullopt;
-  return found.steady()->means->amplitude;
-}
-
-Number steady_period(RunFindings& found, double) {
-  if (!found.steady() || !found.steady()->period) return std::nullopt;
-  return double(*found.steady()->period);
-}
-
-Number impacts_per_period(RunFindings& found, double) {
-  if (!found.steady()) return std::nullopt;
-  const SteadyState& steady = *found.steady();
-  return double(steady.impacts[0] + steady.impacts[1]) / double(steady.measured_periods);
-}
-
-Number worst_steady_amplitude(RunFindings& found, double) {
-  if (!found.worst()) return std::nullopt;
-  return found.worst()->amplitude;
-}
-
-Number worst_frequency(RunFindings& found, double) {
-  if (!found.worst()) return std::nullopt;
-  return found.worst()->frequency;
-}
-
-Number lyapunov_exponent(RunFindings& found, double) {
-  const std::vector<double>& exponents = found.exponents().exponents;
-  if (exponents.empty()) return std::nullopt;
-  return exponents[0];
-}
-
 using enum Dimension;
 using enum Better;
 constexpr std::array<Quantity, 16> quantities{{
@@ -248,7 +202,7 @@ constexpr std::array<Quantity, 16> quantities{{
                 "last |x| = A",
      .at = length,
      .better = least,
-     .value = time_to_amplitude},
+     .value = [](RunFindings& found, double amplitude) { return time_below(found.run(), amplitude); }},
     {.name = "loss_factor_at",
      .dimension = ratio,
      .meaning = "loss factor where its curve over the amplitude first passes A; free motion",
@@ -259,23 +213,23 @@ constexpr std::array<Quantity, 16> quantities{{
      .dimension = ratio,
      .meaning = "largest loss factor before impact failure; free motion",
      .better = greatest,
-     .value = largest_loss_factor},
+     .value = one_of<&RunFindings::largest_loss, &RunFindings::Peak::loss>},
     {.name = "amplitude_of_largest_loss_factor",
      .dimension = length,
      .meaning = "the amplitude at which it is met",
-     .value = amplitude_of_largest_loss_factor},
+     .value = one_of<&RunFindings::largest_loss, &RunFindings::Peak::amplitude>},
     {.name = "lowest_amplitude_above_loss",
      .dimension = length,
      .meaning = "lowest amplitude with a loss factor above L, before impact failure; free motion",
      .at = ratio,
      .better = least,
-     .value = lowest_amplitude_above_loss},
+     .value = extreme_amplitude<std::less<>>},
     {.name = "highest_amplitude_above_loss",
      .dimension = length,
      .meaning = "highest amplitude with a loss factor above L; free motion",
      .at = ratio,
      .better = greatest,
-     .value = highest_amplitude_above_loss},
+     .value = extreme_amplitude<std::greater<>>},
     {.name = "impacts",
      .dimension = count,
      .meaning = "impacts until the last half cycle that is complete",
@@ -307,35 +261,49 @@ constexpr std::array<Quantity, 16> quantities{{
      .meaning = "largest |x| of the steady motion that the release leads to",
      .experiment = Experiment::steady,
      .better = least,
-     .value = steady_amplitude_of},
+     .value = [](RunFindings& found, double) -> Number {
+       if (!found.steady()) return std::nullopt;
+       return found.steady()->means->amplitude;
+     }},
     {.name = "steady_period",
      .dimension = count,
      .meaning = "its period in periods of the force; none if it is not periodic",
      .experiment = Experiment::steady,
-     .value = steady_period},
+     .value = [](RunFindings& found, double) -> Number {
+       if (!found.steady() || !found.steady()->period) return std::nullopt;
+       return double(*found.steady()->period);
+     }},
     {.name = "impacts_per_period",
      .dimension = ratio,
      .meaning = "its impacts in a period of the force",
      .experiment = Experiment::steady,
-     .value = impacts_per_period},
+     .value = [](RunFindings& found, double) -> Number {
+       if (!found.steady()) return std::nullopt;
+       const SteadyState& steady = *found.steady();
+       return double(steady.impacts[0] + steady.impacts[1]) / double(steady.measured_periods);
+     }},
     {.name = "worst_steady_amplitude",
      .dimension = length,
      .meaning = "largest steady |x| over the plan's frequencies, rising and falling; none if one motion is "
                 "not steady",
      .experiment = Experiment::worst,
      .better = least,
-     .value = worst_steady_amplitude},
+     .value = one_of<&RunFindings::worst, &RunFindings::Worst::amplitude>},
     {.name = "worst_frequency",
      .dimension = frequency,
      .meaning = "the frequency at which it is met",
      .experiment = Experiment::worst,
-     .value = worst_frequency},
+     .value = one_of<&RunFindings::worst, &RunFindings::Worst::frequency>},
     {.name = "lyapunov_exponent",
      .dimension = rate,
      .meaning = "largest Lyapunov exponent from the release on",
      .experiment = Experiment::lyapunov,
      .better = least,
-     .value = lyapunov_exponent},
+     .value = [](RunFindings& found, double) -> Number {
+       const std::vector<double>& exponents = found.exponents().exponents;
+       if (exponents.empty()) return std::nullopt;
+       return exponents[0];
+     }},
 }};
 
 Record record_for(std::span<const KeptQuantity> kept) {

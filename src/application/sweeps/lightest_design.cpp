@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -12,6 +13,8 @@
 #include "impact_damper/analysis/design.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/base/number_text.hpp"
+#include "impact_damper/io/json_parts.hpp"
+#include "impact_damper/io/run_file.hpp"
 
 namespace impact_damper {
 namespace {
@@ -20,8 +23,8 @@ constexpr double coarse_mass_step = 1.1, mass_step = 1.01, clearance_step = 1.05
 // Late draws to be expected if exactly the required share were in time; this decides how many are drawn.
 constexpr double late_draws = 20;
 // Fractions of the time and of the widest clearance for which designs are searched.
-constexpr std::array<std::pair<double, double>, 5> parts{{{1, 1}, {1, 0.5}, {1, 0.25}, {0.8, 1}, {0.6, 1}}};
-constexpr double two_pi = 6.283185307179586;
+constexpr std::array<std::pair<double, double>, 5> fractions{
+    {{1, 1}, {1, 0.5}, {1, 0.25}, {0.8, 1}, {0.6, 1}}};
 constexpr double least_part = 1e-9;  // of the primary mass: a secondary mass without effect
 constexpr double time_step = 1.05;   // ratio of successive times tried where no design is in time
 
@@ -29,21 +32,14 @@ std::int64_t draws_of_search(double share) {
   return std::int64_t(std::floor(late_draws / (1 - share) + 0.5));
 }
 
-double rounded(double value) {
-  constexpr int digits = 3;
-  return *parse_number(rounded_text(value, digits));
-}
+double rounded(double value) { return rounded_to(value, 3); }
 
-Variable variable_of(std::string_view name) {
+GridAxis axis_of(std::string_view name, std::vector<double> values) {
   SceneFile any;
   any.in_units.emplace();
   const std::vector<Variable> variables = variables_of(any);
-  return *std::ranges::find(variables, name, &Variable::name);
-}
-
-GridAxis axis_of(std::string_view name, std::vector<double> values) {
   GridAxis axis;
-  axis.variable = variable_of(name);
+  axis.variable = *std::ranges::find(variables, name, &Variable::name);
   axis.values = std::move(values);
   return axis;
 }
@@ -53,24 +49,13 @@ KeptQuantity time_below(double amplitude) {
   return quantity_of("time_to_amplitude=" + number_text(amplitude));
 }
 
-KeptNumbers made(const Plan& plan, std::int64_t i) {
-  const PlannedRun run = run_of(plan, i);
-  return run.problems.empty() ? kept_of(run.scene, run.scales, plan.engine, plan.quantities, plan.forced)
-                              : none_kept(plan.quantities.size(), run.problems);
-}
+KeptNumbers made(const Plan& plan, std::int64_t i) { return kept_of(plan, run_of(plan, i)); }
 
-class Search {
+class DesignSearch {
  public:
-  Search(const DesignQuestion& question, const Threads& threads,
-         const std::function<void(const std::string&)>& tell, std::atomic<std::int64_t>& runs)
-      : question_(question),
-        threads_(threads),
-        tell_(tell),
-        runs_(runs),
-        clearances_(steps_between(question.clearance, clearance_step)),
-        draws_(draws_of_search(question.share)),
-        first_draws_(draws_ / 20),
-        late_allowed_(late_allowed_of(draws_, question.share)) {}
+  DesignSearch(const DesignQuestion& question, const Threads& threads,
+               const std::function<void(const std::string&)>& tell, std::atomic<std::int64_t>& runs)
+      : question_(question), threads_(threads), tell_(tell), runs_(runs) {}
 
   // Returns the lightest design in time, absent if there is none. The masses tried ascend in coarse steps,
   // then in fine ones from the last coarse mass that was late.
@@ -177,8 +162,9 @@ class Search {
   const Threads& threads_;
   const std::function<void(const std::string&)>& tell_;
   std::atomic<std::int64_t>& runs_;
-  std::vector<double> clearances_;
-  std::int64_t draws_, first_draws_, late_allowed_;
+  const std::vector<double> clearances_ = steps_between(question_.clearance, clearance_step);
+  const std::int64_t draws_ = draws_of_search(question_.share), first_draws_ = draws_ / 20,
+                     late_allowed_ = late_allowed_of(draws_, question_.share);
 };
 
 DesignCheck checked(const DesignQuestion& question, const FoundDesign& found, const Threads& threads) {
@@ -334,7 +320,7 @@ std::vector<Problem> problems_of(const DesignQuestion& question) {
            "tolerance", name + " has no value in the scene to vary about");
   }
   for (const auto& [name, range] :
-       {std::pair("secondary_mass", question.secondary_mass), std::pair("clearance", question.clearance)})
+       {std::pair("secondary_mass", question.secondary_mass), {"clearance", question.clearance}})
     demand(range.least > 0 && range.least < range.most, name,
            "must be two numbers > 0, the first one smaller, got " + number_text(range.least) + " and " +
                number_text(range.most));
@@ -363,7 +349,8 @@ Plan search_plan(const DesignQuestion& question, double time, std::vector<double
                  std::vector<double> clearances) {
   // The run must include the end of a half cycle whose peak is in time, even with the heaviest mass stuck.
   const SceneInUnits& scene = question.scene;
-  const double longest_period = two_pi * std::sqrt((*scene.mass + masses.back()) / *scene.stiffness);
+  const double longest_period =
+      2 * std::numbers::pi * std::sqrt((*scene.mass + masses.back()) / *scene.stiffness);
   Plan plan;
   plan.scene = scene_of_design(question, {masses.front(), clearances.front()}, time + longest_period);
   plan.engine = question.engine;
@@ -390,12 +377,12 @@ DesignAnswer find_designs(const DesignQuestion& question, const Threads& threads
   DesignAnswer answer;
   std::atomic<std::int64_t> runs = 0;
   DesignQuestion asked = question;
-  for (const auto& [time, clearance] : parts) {
+  for (const auto& [time, clearance] : fractions) {
     asked.time = time * question.time;
     asked.clearance.most =
         clearance < 1 ? rounded(clearance * question.clearance.most) : question.clearance.most;
     if (!(asked.clearance.least < asked.clearance.most)) continue;
-    const auto found = Search(asked, threads, tell, runs).lightest();
+    const auto found = DesignSearch(asked, threads, tell, runs).lightest();
     if (!found && answer.designs.empty()) break;
     const auto is_it = [&](const FoundDesign& before) { return before.design == *found; };
     if (!found || std::ranges::any_of(answer.designs, is_it)) continue;
@@ -405,7 +392,7 @@ DesignAnswer find_designs(const DesignQuestion& question, const Threads& threads
   }
   answer.met = !answer.designs.empty();
   if (!answer.met)
-    if (const auto soonest = Search(question, threads, tell, runs).soonest())
+    if (const auto soonest = DesignSearch(question, threads, tell, runs).soonest())
       answer.designs.push_back(*soonest);
   for (FoundDesign& each : answer.designs) {
     tell("checking the design for " + rounded_text(each.time, 3) + " with " +
@@ -419,6 +406,76 @@ DesignAnswer find_designs(const DesignQuestion& question, const Threads& threads
   answer.late_allowed = late_allowed_of(answer.draws, question.share);
   answer.runs = runs;
   return answer;
+}
+
+// --- The file ---------------------------------------------------------------------------------------------
+
+namespace {
+
+using Layout = JsonWriter::Layout;
+
+void write_question(JsonWriter& out, const DesignQuestion& question) {
+  out.open_object("question", Layout::lines);
+  out.open_object("scene", Layout::one_line);
+  const Design given{*question.scene.damper().secondary_mass, *question.scene.damper().clearance};
+  write_unit_fields(out, *scene_of_design(question, given, longest_followed * question.time).in_units);
+  out.close();
+  write_engine(out, question.engine);
+  out.fields("amplitude", question.amplitude, "time", question.time, "share", question.share);
+  out.object("secondary_mass", Layout::one_line, "least", question.secondary_mass.least, "most",
+             question.secondary_mass.most);
+  out.object("clearance", Layout::one_line, "least", question.clearance.least, "most",
+             question.clearance.most);
+  out.open_array("tolerances", Layout::one_line);
+  for (const SampledNumber& each : question.tolerances) {
+    out.open_object(Layout::one_line);
+    out.fields("number", each.variable.name, "half_width", each.width, "relative", each.relative);
+    out.close();
+  }
+  out.close();
+  out.fields("neighbours", question.neighbours, "seed", question.seed);
+  out.close();
+}
+
+void write_design(JsonWriter& out, const FoundDesign& found, const DesignQuestion& question,
+                  bool dimensionless) {
+  const DesignCheck& check = found.check;
+  out.open_object(Layout::one_line);
+  out.fields("time", found.time, "widest_clearance", found.widest, "secondary_mass",
+             found.design.secondary_mass, "clearance", found.design.clearance, "nominal_time",
+             check.nominal_time, "time_of_share", check.time_of_share, "slowest", check.slowest, "in_time",
+             check.in_time, "share_low", check.share.low, "share_high", check.share.high, "confirmed",
+             check.confirmed, "largest_impact_speed", check.largest_impact_speed);
+  std::optional<double> force = check.largest_wall_force;
+  if (force) force = force_in_unit(*force, question, dimensionless);
+  out.field("largest_wall_force", force);
+  out.close();
+}
+
+}  // namespace
+
+double force_in_unit(double force, const DesignQuestion& question, bool dimensionless) {
+  return dimensionless ? force * (1 / scales_of(question.scene).of(Dimension::force)) : force;
+}
+
+std::string design_text(const DesignQuestion& question, const DesignAnswer& answer, bool dimensionless) {
+  JsonWriter out("design");
+  out.open_object(Layout::lines);
+  out.field("schema", "impact-damper/design/1");
+  write_question(out, question);
+  out.open_object("units", Layout::one_line);
+  using enum Dimension;
+  for (const Dimension each : {mass, length, time, velocity, force})
+    out.field(name_of(each), unit_of(each, !dimensionless));
+  out.close();
+  out.object("search", Layout::one_line, "draws", answer.draws, "late_allowed", answer.late_allowed, "runs",
+             answer.runs);
+  out.field("met", answer.met);
+  out.open_array("designs", Layout::lines);
+  for (const FoundDesign& each : answer.designs) write_design(out, each, question, dimensionless);
+  out.close();
+  write_provenance(out);
+  return sealed(out.finish());
 }
 
 }  // namespace impact_damper

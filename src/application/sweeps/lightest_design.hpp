@@ -116,4 +116,13 @@ std::int64_t least_neighbours_of(double share);
 // (M15.11).
 std::vector<double> steps_between(DesignRange range, double ratio);
 
+// Returns question and answer as JSON, schema "impact-damper/design/1" (data/schema/design.schema.json).
+// `dimensionless`: the scene was made by with_unit_scales(). The question's scene must have
+// secondary_mass and clearance.
+std::string design_text(const DesignQuestion& question, const DesignAnswer& answer, bool dimensionless);
+
+// Returns a force of an answer in unit_of(Dimension::force, !dimensionless). `dimensionless` as above; the
+// question's scene must then have a clearance.
+double force_in_unit(double force, const DesignQuestion& question, bool dimensionless);
+
 }  // namespace impact_damper

@@ -1,11 +1,17 @@
 #include "application/sweeps/plan.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <set>
 
 #include "application/sweeps/sampling.hpp"
 #include "impact_damper/base/number_text.hpp"
+#include "impact_damper/io/csv.hpp"
+#include "impact_damper/io/json_parts.hpp"
+#include "impact_damper/io/json_reader.hpp"
+#include "impact_damper/io/run_file.hpp"
 #include "impact_damper/math/elementary.hpp"
+#include "impact_damper/orbits/lyapunov.hpp"
+#include "impact_damper/responses/response_fields.hpp"
 
 namespace impact_damper {
 namespace {
@@ -54,17 +60,6 @@ double drawn(const Samples& samples, std::size_t n, std::int64_t i, double other
       return otherwise + width * normal_quantile(u);
   }
   return otherwise;
-}
-
-// A field of a CSV row (RFC 4180).
-void append_field(std::string& row, std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
-    row += text;
-    return;
-  }
-  row += '"';
-  for (const char c : text) row += c == '"' ? std::string("\"\"") : std::string(1, c);
-  row += '"';
 }
 
 }  // namespace
@@ -163,11 +158,14 @@ std::string header_of(const Plan& plan) {
   return header;
 }
 
+KeptNumbers kept_of(const Plan& plan, const PlannedRun& run) {
+  return run.problems.empty() ? kept_of(run.scene, run.scales, plan.engine, plan.quantities, plan.forced)
+                              : none_kept(plan.quantities.size(), run.problems);
+}
+
 std::string row_of(const Plan& plan, std::int64_t i) {
   const PlannedRun run = run_of(plan, i);
-  const KeptNumbers kept = run.problems.empty()
-                               ? kept_of(run.scene, run.scales, plan.engine, plan.quantities, plan.forced)
-                               : none_kept(plan.quantities.size(), run.problems);
+  const KeptNumbers kept = kept_of(plan, run);
   std::string row;
   append_number(row, i);
   for (const double value : run.values) {
@@ -186,7 +184,7 @@ std::string row_of(const Plan& plan, std::int64_t i) {
   row += ',';
   row += kept.end;
   row += ',';
-  append_field(row, kept.problem);
+  append_csv_cell(row, kept.problem);
   return row;
 }
 
@@ -212,6 +210,298 @@ std::vector<PlanColumn> columns_of(const Plan& plan) {
 RowRange rows_of_part(const Plan& plan, std::int64_t part, std::int64_t parts) {
   const std::int64_t runs = runs_of(plan);
   return {runs * (part - 1) / parts, runs * part / parts};
+}
+
+// --- Files ------------------------------------------------------------------------------------------------
+
+namespace {
+
+using Layout = JsonWriter::Layout;
+constexpr std::string_view plan_schema = "impact-damper/plan/1";
+constexpr FileKind plan_kind{"plan", 1 << 20};
+constexpr std::size_t most_numbers = 16, most_quantities = 64;
+constexpr double most_seed = 9007199254740992;  // 2^53: any JSON reader has it exactly
+
+// Returns the variable that "number" names.
+std::optional<Variable> read_variable(ObjectReader& object, const std::vector<Variable>& variables) {
+  std::vector<std::string_view> names(variables.size());
+  std::ranges::transform(variables, names.begin(), &Variable::name);
+  const auto index = object.require("number") ? object.word("number", names) : std::nullopt;
+  return index ? std::optional(variables[*index]) : std::nullopt;
+}
+
+// Reads "from" and "to" and, unless `scale` is null, "scale".
+void read_ends(ObjectReader& object, const NumberRange& range, double& from, double& to, Spacing* scale) {
+  const bool has_from = object.required("from", from, range), has_to = object.required("to", to, range);
+  if (scale) object.optional("scale", *scale);
+  if (!has_from || !has_to) return;
+  if (!(from < to)) object.reject("to", "must be > from, " + number_text(from) + ", got " + number_text(to));
+  if (scale && *scale == Spacing::logarithmic && !(from > 0))
+    object.reject("from", "must be > 0 for a logarithmic scale, got " + number_text(from));
+}
+
+std::vector<GridAxis> read_grid(ObjectReader& plan, const std::vector<Variable>& variables) {
+  std::vector<GridAxis> grid;
+  for (ObjectReader object : plan.optional_objects("grid", most_numbers)) {
+    const auto variable = read_variable(object, variables);
+    GridAxis axis;
+    if (variable) axis.variable = *variable;
+    if (object.has("values")) {
+      if (object.required("values", axis.values, axis.variable.range) && axis.values.empty())
+        object.reject("values", "must be 1 or more numbers, got 0");
+    } else {
+      read_ends(object, axis.variable.range, axis.from, axis.to, &axis.spacing);
+      object.required("count", axis.count, within(2, double(most_axis_values)));
+    }
+    if (variable) grid.push_back(std::move(axis));
+  }
+  return grid;
+}
+
+using Law = SampledNumber::Law;
+std::string_view name_of_width(Law law) { return law == Law::uniform ? "half_width" : "standard_deviation"; }
+
+SampledNumber read_sampled(ObjectReader& object, const Variable& variable) {
+  SampledNumber number;
+  number.variable = variable;
+  const bool uniform = object.has(name_of_width(Law::uniform)),
+             normal = object.has(name_of_width(Law::normal));
+  if (uniform || normal) {
+    number.law = uniform ? Law::uniform : Law::normal;
+    object.required(name_of_width(number.law), number.width, above(0));
+    object.optional("relative", number.relative);
+    if (uniform && normal)
+      object.reject("half_width", "either it or standard_deviation must be given, got both");
+  } else {
+    read_ends(object, variable.range, number.from, number.to, &number.spacing);
+  }
+  return number;
+}
+
+Samples read_samples(ObjectReader& object, const std::vector<Variable>& variables) {
+  Samples samples;
+  object.required("count", samples.count, within(1, double(most_runs)));
+  object.optional("seed", samples.seed, within(0, most_seed));
+  object.optional("method", samples.method);
+  for (ObjectReader each : object.required_objects("numbers", most_numbers))
+    if (const auto variable = read_variable(each, variables))
+      samples.numbers.push_back(read_sampled(each, *variable));
+  return samples;
+}
+
+void read_quantities(ObjectReader& object, Plan& plan) {
+  std::vector<std::string> texts;
+  if (!object.required("quantities", texts, some_text, most_quantities)) return;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    const QuantityReading reading = read_quantity(texts[i]);
+    if (reading.kept) plan.quantities.push_back(*reading.kept);
+    if (!reading.kept) object.reject("quantities", i, reading.problem);
+  }
+}
+
+void read_forced_rules(ObjectReader& object, ForcedRules& rules) {
+  if (auto steady = object.optional_object("steady")) describe(JsonFields(*steady, true), rules.steady);
+  if (auto frequencies = object.optional_object("frequencies")) {
+    FrequencyRange range;
+    read_ends(*frequencies, above(0), range.from, range.to, nullptr);
+    frequencies->required("count", range.count, within(2, 100'000));
+    rules.frequencies = range;
+  }
+  if (auto lyapunov = object.optional_object("lyapunov")) {
+    lyapunov->optional("periods", rules.lyapunov_periods, within(10, 1e9));
+    lyapunov->optional("discard", rules.lyapunov_discard, within(0, 1e9));
+  }
+}
+
+SceneFile read_scene_of(ObjectReader& object, const std::filesystem::path& folder, const FindFile& find) {
+  if (object.has("scene_file")) {
+    std::string name;
+    const bool both = object.has("scene");
+    if (both) object.reject("scene", "either it or scene_file must be given, got both");
+    if (!object.required("scene_file", name, some_text) || both) return {};
+    const std::filesystem::path beside = folder / name;
+    std::error_code none;
+    const auto elsewhere = find && !std::filesystem::exists(beside, none) ? find(name) : std::nullopt;
+    return read_scene_file(elsewhere.value_or(beside.string()));
+  }
+  if (!object.has("scene")) {
+    object.reject("scene", "it or scene_file must be given");
+    return {};
+  }
+  ObjectReader scene = object.required_object("scene");
+  return read_scene_object(scene);
+}
+
+Plan read_fields(ObjectReader& object, const std::filesystem::path& folder, const FindFile& find) {
+  Plan plan;
+  if (object.require("schema")) object.word("schema", {plan_schema});
+  object.optional("description", plan.description);
+  plan.scene = read_scene_of(object, folder, find);
+  if (auto engine = object.optional_object("engine"))
+    if (const auto read = read_engine_of_plan(*engine)) plan.engine = *read;
+  const std::vector<Variable> variables = variables_of(plan.scene);
+  plan.grid = read_grid(object, variables);
+  if (auto samples = object.optional_object("samples")) plan.samples = read_samples(*samples, variables);
+  read_quantities(object, plan);
+  read_forced_rules(object, plan.forced);
+  if (object.all_valid())
+    for (const Problem& problem : problems_of(plan)) object.reject(problem.field, problem.message);
+  return plan;
+}
+
+Plan finished(JsonDocument document, const std::filesystem::path& folder, const FindFile& find) {
+  ObjectReader object = document.root();
+  Plan plan = read_fields(object, folder, find);
+  document.finish();
+  return plan;
+}
+
+void write_ends(JsonWriter& out, double from, double to, Spacing spacing) {
+  out.fields("from", from, "to", to, "scale", name_of(spacing));
+}
+
+void write_samples(JsonWriter& out, const Samples& samples) {
+  out.open_object("samples", Layout::one_line);
+  out.fields("count", samples.count, "seed", samples.seed, "method", name_of(samples.method));
+  out.open_array("numbers", Layout::one_line);
+  for (const SampledNumber& each : samples.numbers) {
+    out.open_object(Layout::one_line);
+    out.field("number", each.variable.name);
+    if (each.law == Law::between)
+      write_ends(out, each.from, each.to, each.spacing);
+    else
+      out.fields(name_of_width(each.law), each.width, "relative", each.relative);
+    out.close();
+  }
+  out.close();
+  out.close();
+}
+
+void write_fields(JsonWriter& out, const Plan& plan) {
+  out.field("schema", plan_schema);
+  if (!plan.description.empty()) out.field("description", plan.description);
+  out.open_object("scene", Layout::one_line);
+  if (!plan.scene.description.empty()) out.field("description", plan.scene.description);
+  if (plan.scene.in_units) {
+    write_unit_fields(out, *plan.scene.in_units);
+  } else {
+    write_scene_fields(out, plan.scene.scene);
+  }
+  out.close();
+  write_engine(out, plan.engine);
+  out.open_array("grid", Layout::one_line);
+  for (const GridAxis& axis : plan.grid) {
+    out.open_object(Layout::one_line);
+    out.field("number", axis.variable.name);
+    if (axis.values.empty()) {
+      write_ends(out, axis.from, axis.to, axis.spacing);
+      out.field("count", axis.count);
+    } else {
+      out.field("values", axis.values);
+    }
+    out.close();
+  }
+  out.close();
+  if (plan.samples) write_samples(out, *plan.samples);
+  std::vector<std::string> quantities;
+  for (const KeptQuantity& each : plan.quantities) quantities.push_back(each.text());
+  out.field("quantities", quantities);
+  const ForcedRules& forced = plan.forced;
+  out.object("steady", Layout::one_line, "tolerance", forced.steady.tolerance, "longest_period",
+             forced.steady.longest_period, "max_periods", forced.steady.max_periods, "mean_periods",
+             forced.steady.mean_periods);
+  if (forced.frequencies)
+    out.object("frequencies", Layout::one_line, "from", forced.frequencies->from, "to",
+               forced.frequencies->to, "count", forced.frequencies->count);
+  out.object("lyapunov", Layout::one_line, "periods", forced.lyapunov_periods, "discard",
+             forced.lyapunov_discard);
+}
+
+}  // namespace
+
+Plan read_plan(const std::filesystem::path& file, const FindFile& find) {
+  return finished(JsonDocument::read(file, plan_kind), file.parent_path(), find);
+}
+
+Plan parse_plan(const std::string& name, const std::string& text) {
+  return finished(JsonDocument::parse(name, text), {}, {});
+}
+
+Plan read_plan_in(ObjectReader& object) {
+  ObjectReader plan = object.required_object("plan");
+  return read_fields(plan, {}, {});
+}
+
+void write_plan(JsonWriter& out, const Plan& plan) {
+  out.open_object("plan", Layout::one_line);
+  write_fields(out, plan);
+  out.close();
+}
+
+std::string plan_text(const Plan& plan) {
+  JsonWriter out("plan");
+  out.open_object(Layout::lines);
+  write_fields(out, plan);
+  out.close();
+  return out.finish() + '\n';
+}
+
+std::vector<Problem> problems_of(const Plan& plan) {
+  std::vector<Problem> problems;
+  const auto demand = [&](bool holds, const std::string& field, const std::string& message) {
+    if (!holds) problems.push_back({field, message});
+  };
+  const auto demand_at_most = [&](std::size_t most, std::size_t given, const std::string& field,
+                                  const std::string& of) {
+    demand(given <= most, field,
+           "must be at most " + std::to_string(most) + of + ", got " + std::to_string(given));
+  };
+  std::set<std::string> names;
+  const auto demand_once = [&](const std::string& name, const std::string& field, const std::string& thing) {
+    demand(names.insert(name).second, field,
+           "must name each " + thing + " once, got " + in_quotes(name) + " twice");
+  };
+  demand(!plan.grid.empty() || (plan.samples && !plan.samples->numbers.empty()), "grid",
+         "a number that varies must be given, in grid or in the numbers of samples");
+  demand_at_most(most_numbers, plan.grid.size(), "grid", " numbers");
+  for (const GridAxis& axis : plan.grid) {
+    demand_once(axis.variable.name, "grid", "number");
+    demand(axis.values.size() <= std::size_t(most_listed_values), "grid",
+           "must list at most " + std::to_string(most_listed_values) + " values of " + axis.variable.name +
+               ", got " + std::to_string(axis.values.size()));
+  }
+  names.clear();
+  for (const SampledNumber& number : plan.samples ? plan.samples->numbers : std::vector<SampledNumber>{}) {
+    const Variable& variable = number.variable;
+    const bool in_grid = is_in_grid(plan, variable), is_between = number.law == Law::between;
+    demand_once(variable.name, "samples", "number");
+    demand(!is_between || !in_grid, "samples",
+           in_quotes(variable.name) +
+               " is in the grid: it may vary about its value there, by half_width or standard_deviation, not "
+               "from one number to another");
+    demand(is_between || in_grid || variable.of(plan.scene), "samples",
+           in_quotes(variable.name) + " has no value in the scene to vary about");
+  }
+  demand(runs_of(plan) <= most_runs, "grid",
+         "must make at most " + std::to_string(most_runs) + " runs in all");
+  demand(!plan.quantities.empty(), "quantities", "at least one must be given");
+  demand_at_most(most_quantities, plan.quantities.size(), "quantities", "");
+  names.clear();
+  for (const KeptQuantity& each : plan.quantities) demand_once(each.text(), "quantities", "quantity");
+  const auto are_of = [&](Experiment experiment) {
+    return std::ranges::any_of(
+        plan.quantities, [&](const KeptQuantity& each) { return each.quantity->experiment == experiment; });
+  };
+  const std::size_t dampers = plan.scene.scene.dampers.size();
+  demand(dampers <= most_dampers_with_changes || !are_of(Experiment::lyapunov), "quantities",
+         "must not be of exponents with more than " + std::to_string(most_dampers_with_changes) +
+             " dampers, as the scene has " + std::to_string(dampers));
+  demand(plan.forced.frequencies || !are_of(Experiment::worst), "frequencies",
+         "missing, the range must be given in which the worst one is looked for");
+  const bool forced = are_of(Experiment::steady) || are_of(Experiment::worst) || are_of(Experiment::lyapunov);
+  demand(!forced || !std::holds_alternative<Cem>(plan.engine), "engine",
+         "must be exact or restitution for quantities of motions under a force, got cem");
+  return problems;
 }
 
 }  // namespace impact_damper

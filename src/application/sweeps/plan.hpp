@@ -1,8 +1,16 @@
 // A plan: which runs a sweep consists of, and what is kept of each. Run i of a plan is a function of the plan
 // and i alone, so runs may be made in any order, by any number of threads and on any number of machines.
+//
+// Plans are JSON files, schema "impact-damper/plan/1"; docs/sweeps.md says what each key means:
+//
+//   {"schema": "impact-damper/plan/1", "scene": {"until_amplitude": 0.03},
+//    "grid": [{"number": "mass_ratio", "from": 0.005, "to": 0.08, "count": 40, "scale": "logarithmic"}],
+//    "quantities": ["time_to_amplitude=0.6", "impacts"]}
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -104,6 +112,9 @@ PlannedRun run_of(const Plan& plan, std::int64_t i);
 // Returns the run with these numbers of the grid, which need not be among its values, and without draws.
 PlannedRun run_of(const Plan& plan, const std::vector<double>& grid);
 
+// Returns what is kept of a run of the plan.
+KeptNumbers kept_of(const Plan& plan, const PlannedRun& run);
+
 // One row of the table, without its end of line, and its header. RFC 4180: the run's number, the numbers that
 // vary, the quantities, "end" and "problem".
 std::string header_of(const Plan& plan);
@@ -122,5 +133,23 @@ struct RowRange {
 };
 RowRange rows_of_part(const Plan& plan, std::int64_t part, std::int64_t parts);
 inline constexpr std::int64_t most_parts = 1'000'000;
+
+// Returns the problems of a plan as a whole, whatever its origin.
+std::vector<Problem> problems_of(const Plan& plan);
+
+// Finds the place of a file that a plan names and that is not beside the plan.
+using FindFile = std::function<std::optional<std::string>(const std::string& name)>;
+
+// Reads a plan. Throws IoError if `file`, or the scene file that it names, cannot be read, InputError with a
+// line for each of the first 50 problems in it.
+Plan read_plan(const std::filesystem::path& file, const FindFile& find = {});
+// Reads a plan, likewise, from a text that contains its scene.
+Plan parse_plan(const std::string& name, const std::string& text);
+// Returns the text of a file. It reads back as an equal plan, and equal plans give equal texts.
+std::string plan_text(const Plan& plan);
+
+// Read and write a plan that is the field "plan" of an object, on one line; the former collects the problems.
+Plan read_plan_in(ObjectReader& object);
+void write_plan(JsonWriter& out, const Plan& plan);
 
 }  // namespace impact_damper

@@ -89,6 +89,10 @@ std::string rounded_text(double value, int digits) {
   return written(value, std::chars_format::general, digits);
 }
 
+double rounded_to(double value, int digits) {
+  return parse_number(rounded_text(value, digits)).value_or(value);
+}
+
 std::optional<double> parse_number(std::string_view text) {
   const std::optional<double> value = parse_whole<double>(text);
   if (!value || !std::isfinite(*value)) return std::nullopt;

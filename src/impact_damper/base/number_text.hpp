@@ -16,6 +16,8 @@ void append_number(std::string& text, std::int64_t value);
 
 // Returns `value` with that many significant digits, for people: "0.0788", "1.23e+06".
 std::string rounded_text(double value, int digits);
+// Returns the number that this text spells.
+double rounded_to(double value, int digits);
 
 // Returns the finite number that the whole of `text` spells, rounded to nearest; 1e-400 is zero, as for any
 // reader of JSON. Absent for anything else: spaces, "nan" or "inf", overflow, text after the number. A plus

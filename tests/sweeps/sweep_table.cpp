@@ -1,4 +1,4 @@
-#include "application/sweeps/share_file.hpp"
+#include "application/sweeps/sweep_table.hpp"
 
 #include <doctest/doctest.h>
 #include <sys/syscall.h>
@@ -8,7 +8,6 @@
 #include <fstream>
 #include <sstream>
 
-#include "application/sweeps/plan_file.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/io/json_reader.hpp"
 
