@@ -95,9 +95,8 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
       const auto release = stuck.release(accumulation, tracker.remaining(), tracker.search());
       if (release) state = stuck.released(*release);
       tracker.pass(stuck, release ? *release : tracker.remaining(), state, Real(0));
-      if (observer.wants_contacts() && begin <= tracker.now()) {
-        observer.contact(double(begin), tracker.stopped() ? tracker.end_time() : double(tracker.now()), wall);
-      }
+      if (observer.wants_contacts() && begin <= tracker.now())
+        observer.contact(double(begin), tracker.time(), wall);
       released = true;
       continue;
     }
@@ -117,7 +116,7 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
     on_wall = true;
   }
   tracker.finish(state, Real(0), losses);
-  return {*tracker.stopped(), tracker.end_time()};
+  return tracker.outcome();
 }
 
 }  // namespace impact_damper

@@ -18,9 +18,7 @@
 
 #include "impact_damper/base/floating_point.hpp"
 #include "impact_damper/engines/checked.hpp"
-#include "impact_damper/engines/observer.hpp"
-#include "impact_damper/engines/run_tracker.hpp"
-#include "impact_damper/engines/secondary_masses.hpp"
+#include "impact_damper/engines/engine_of_dampers.hpp"
 #include "impact_damper/math/scalar.hpp"
 #include "impact_damper/motion/impact_law.hpp"
 #include "impact_damper/motion/sticking.hpp"
@@ -28,25 +26,20 @@
 namespace impact_damper {
 
 template <class Real, class Force, class Observer>
-class RestitutionOfDampers {
+class RestitutionOfDampers : EngineOfDampers<Real, Force, Observer> {
+  using Base = EngineOfDampers<Real, Force, Observer>;
+  using Base::energy_of, Base::losses_, Base::masses_, Base::next_meeting_, Base::observer_, Base::system_,
+      Base::tracker_, Base::v_, Base::x_;
+
  public:
   RestitutionOfDampers(const System<Real, Force>& system, const Scene& scene, const Restitution& options,
                        Observer& observer)
-      : system_(system),
-        options_(options),
-        observer_(observer),
-        tracker_(scene, system, options.budget, options.max_steps, observer),
-        masses_(scene.dampers),
-        x_(scene.x0),
-        v_(scene.v0),
-        energy_(scene.dampers.size()),
-        places_(scene.dampers.size()) {}
+      : Base(system, scene, options.budget, options.max_steps, observer), options_(options) {}
 
   Outcome run() {
     if (observer_.wants_energy()) {
       tracker_.begin(energy_now());
-      for (std::size_t i = 0; i < masses_.size(); ++i)
-        energy_[masses_.number[i]].initial_kinetic = masses_.kinetic(i, v_);
+      Base::note_kinetic(&DamperEnergy::initial_kinetic);
     }
     settle();
     while (!tracker_.stopped()) {
@@ -63,12 +56,10 @@ class RestitutionOfDampers {
     }
     for (std::size_t i = 0; i < masses_.size(); ++i) let_go(i);
     if (observer_.wants_energy()) {
-      for (std::size_t i = 0; i < masses_.size(); ++i)
-        energy_[masses_.number[i]].final_kinetic = masses_.kinetic(i, v_);
-      tracker_.finish(energy_now(), losses_);
-      observer_.energy_balance().dampers = std::move(energy_);
+      Base::note_kinetic(&DamperEnergy::final_kinetic);
+      Base::finish(energy_now());
     }
-    return {*tracker_.stopped(), tracker_.end_time()};
+    return tracker_.outcome();
   }
 
  private:
@@ -101,29 +92,16 @@ class RestitutionOfDampers {
   void pass(const Motion& motion, const Real& until) {
     const auto last = next_meeting_.primary_at(motion.primary(), until);
     State<Real> end{last.x, last.v, Real(0), Real(0)};
-    tracker_.pass(motion, until, end, Real(0), [&](const Real& t) { tell_sample(motion, t); });
+    const auto stuck = [&](auto&& set) {
+      for (std::size_t i = 0; some_rest_ && i < masses_.size(); ++i)
+        if (masses_.held[i]) set(i, Real(0), Real(0));
+    };
+    tracker_.pass(motion, until, end, Real(0),
+                  [&](const Real& t) { Base::tell_sample(t, motion.primary().at(t), stuck); });
     const Real t = tracker_.passed();
     if (t == 0) return;
-    const auto now = t == until ? last : motion.primary().at(t);
-    masses_.fly(t, now.dx, now.dv);
-    if (some_rest_) {
-      for (std::size_t i = 0; i < masses_.size(); ++i)
-        if (masses_.held[i]) masses_.u[i] = masses_.u1[i] = 0;
-    }
-    x_ = now.x;
-    v_ = now.v;
+    Base::advance(t, t == until ? last : motion.primary().at(t), stuck);
     not_followed_ = 0;
-  }
-  void tell_sample(const Motion& motion, const Real& t) {
-    const auto now = motion.primary().at(t);
-    for (std::size_t i = 0; i < masses_.size(); ++i) {
-      const Real& away = masses_.away[i];
-      const bool sticks = masses_.held[i];
-      const Real u = sticks ? Real(0) : Real(masses_.u[i] + (masses_.u1[i] * t - away * now.dx));
-      const Real u1 = sticks ? Real(0) : Real(masses_.u1[i] - away * now.dv);
-      places_[masses_.number[i]] = masses_.place(i, u, u1);
-    }
-    observer_.sample(observer_.next_sample(), double(now.x), double(now.v), places_);
   }
 
   // Carries out the impacts of the masses in `meeting` (M17.2), which also push masses at rest on a wall.
@@ -146,10 +124,7 @@ class RestitutionOfDampers {
     std::sort(told_.begin(), told_.end(), [&](const auto& one, const auto& other) {
       return masses_.number[one.index] < masses_.number[other.index];
     });
-    for (const MassAtWall<Real>& each : told_) {
-      observer_.impact(double(tracker_.now()), masses_.wall(each.index), double(masses_.w(each.index)),
-                       double(x_), masses_.number[each.index]);
-    }
+    for (const MassAtWall<Real>& each : told_) Base::tell_impact(each.index, masses_.wall(each.index));
     std::sort(at_walls_.begin(), at_walls_.end(),
               [](const auto& one, const auto& other) { return one.index < other.index; });
     const Real jump = jump_of_velocity<Real>(at_walls_);
@@ -167,7 +142,7 @@ class RestitutionOfDampers {
         const Real impulse = each.nu * (after - (each.speed - each.away * jump));
         const Real loss = -impulse * (each.speed + after) / 2;  // (M17.4)
         losses_ += loss;
-        energy_[masses_.number[each.index]].impact_loss += double(loss);
+        energy_of(each.index).impact_loss += double(loss);
         observer_.energy_balance().impact_loss.push_back(double(loss));
       }
     }
@@ -214,17 +189,11 @@ class RestitutionOfDampers {
     return {order == 2 ? value : Real(0), value > 0 ? Real(1) : value < 0 ? Real(-1) : Real(0)};
   }
   void stick(std::size_t i, const Real& later) {
-    masses_.held[i] = true;
-    masses_.held_since[i] = double(tracker_.now() + later);
+    Base::hold(i, Real(tracker_.now() + later));
     masses_.u[i] = masses_.u1[i] = 0;
   }
   void let_go(std::size_t i) {
-    if (!masses_.held[i]) return;
-    masses_.held[i] = false;
-    const double begin = masses_.held_since[i],
-                 end = tracker_.stopped() ? tracker_.end_time() : double(tracker_.now());
-    if (observer_.wants_contacts() && begin <= end)
-      observer_.contact(begin, end, masses_.wall(i), masses_.number[i]);
+    if (masses_.held[i]) Base::let_go(i);
   }
 
   // Takes the limit of complete chattering: masses on the side to which x'' leads join the primary mass now
@@ -336,7 +305,7 @@ class RestitutionOfDampers {
       if (observer_.wants_energy()) {
         const Real w = masses_.w(i), loss = masses_.nu[i] * w * (w - gained) / 2;  // (M17.7)
         losses_ += loss;
-        DamperEnergy& energy = energy_[masses_.number[i]];
+        DamperEnergy& energy = energy_of(i);
         energy.bounce_down_loss += double(loss);
         ++energy.bounce_downs;
         observer_.energy_balance().bounce_down_loss += double(loss);
@@ -433,30 +402,15 @@ class RestitutionOfDampers {
   }
 
   Energy energy_now() const {
-    Real kinetic = v_ * v_, paper = v_ * v_;
-    for (std::size_t i = 0; i < masses_.size(); ++i) {
-      const Real w = masses_.w(i), z1 = v_ + w;
-      kinetic += masses_.nu[i] * z1 * z1;
-      paper += masses_.nu[i] * (v_ * v_ + w * w);
-    }
-    return {double(Real(kinetic / 2)), double(Real(x_ * x_ / 2)), 0, double(Real((paper + x_ * x_) / 2))};
+    return Base::energy_now([](std::size_t) { return Real(0); });
   }
 
-  const System<Real, Force>& system_;
   const Restitution& options_;
-  Observer& observer_;
-  RunTracker<Real, Force, Observer> tracker_;
-  SecondaryMasses<Real> masses_;
-  Real x_, v_;
   Real mass_{1};                               // of the primary mass and what sticks to it
   std::optional<Driven<Real, Force>> joined_;  // their oscillator, if anything sticks
   Real push_{0};                               // the side on which masses stick, 1 or -1; 0: none sticks
   bool some_rest_ = false;
-  Real not_followed_{0};  // how long the chattering whose limit has been taken lasts
-  Real losses_{0};
-  std::vector<DamperEnergy> energy_;  // by number in the scene
-  std::vector<PlaceInCavity> places_;
-  NextMeeting<Real, Force> next_meeting_;
+  Real not_followed_{0};                           // how long the chattering whose limit has been taken lasts
   std::vector<MassAtWall<Real>> at_walls_, told_;  // told_: only those whose impacts are reported
   std::vector<Chattering> chattering_;
   std::vector<Joining> joining_;  // of the first 0, 1, 2 ... of them

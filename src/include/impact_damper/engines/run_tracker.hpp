@@ -49,10 +49,13 @@ class RunTracker {
   const Real& now() const { return clock_.now(); }
   Real remaining() const { return Real(horizon_.end_time) - clock_.now(); }
   const std::optional<StopReason>& stopped() const { return stopped_; }
-  // The time at which the run ended: exactly the time asked for if that ended it.
-  double end_time() const { return timed_out_ ? horizon_.end_time : double(clock_.now()); }
+  // The time up to which the run has been followed: exactly the time asked for if that ended it.
+  double time() const { return timed_out_ ? horizon_.end_time : double(clock_.now()); }
+  // How the run ended, once it has stopped.
+  Outcome outcome() const { return {*stopped_, time()}; }
   Search<Real>& search() { return search_; }
 
+  // Begin and end the energy balance, if it is wanted. losses: of all impacts and contacts.
   void begin(const State<Real>& start, const Real& depth) {
     if (observer_.wants_energy()) begin(energy_of(system_, start, depth));
   }

@@ -12,6 +12,7 @@
 
 #include "impact_damper/engines/damper_order.hpp"
 #include "impact_damper/engines/observer.hpp"
+#include "impact_damper/motion/energy.hpp"
 #include "impact_damper/motion/flight.hpp"
 
 namespace impact_damper {
@@ -44,8 +45,7 @@ struct SecondaryMasses {
     return {double(Real(wall + away[i] * distance)), double(Real(away[i] * speed))};
   }
   double kinetic(std::size_t i, const Real& v) const {
-    const Real z1 = v + w(i);
-    return double(Real(nu[i] * z1 * z1 / 2));
+    return kinetic_energy(nu[i], v, w(i));
   }
 
   // Moves all masses in flight by a time t in which x departs from its straight line by dx and x' changes by
