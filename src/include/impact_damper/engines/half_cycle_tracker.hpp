@@ -64,8 +64,8 @@ std::optional<Real> leave_zero(const Motion& motion, const Real& duration,
   half_cycles.take_side(leads[order] > 0 ? 1 : -1);
   if (order < 3) return Real(0);
   const Real fourth = motion.derivative_of_x(1, half_cycles.side(), Real(0), search.span).whole.third;
-  const Real leap = begin_by_lead<Real>(3, leads[order], fourth, search.span);
-  return leap < duration ? leap : duration;
+  const Real begin = begin_by_lead<Real>(3, leads[order], fourth, search.span);
+  return begin < duration ? begin : duration;
 }
 
 // Finds the peaks of the half cycle under way in [from, until): where x' changes its sign. Sets

@@ -318,11 +318,11 @@ class RestitutionOfDampers : EngineOfDampers<Real, Force, Observer> {
     v_ += gained;
     for (const Chattering& each : chattering_) stick(each.index, each.lasts);
   }
-  // Sums over the first masses of chattering_. kick: nu (1 + e) r, the second sum of (M17.5).
+  // Sums over the first masses of chattering_. impulse: nu (1 + e) r, the second sum of (M17.5).
   struct Joining {
-    Real mass{0}, momentum{0}, kick{0}, moves{0};
-    Real kicks{0};     // the sum in (M17.21): speed that they give to another mass
-    Real duration{0};  // (M17.21)
+    Real mass{0}, momentum{0}, impulse{0}, moves{0};
+    Real given_speed{0};  // the sum in (M17.21): speed that they give to another mass
+    Real duration{0};     // (M17.21)
   };
   // Shortens chattering_ to as many of its first masses as can join, and returns their sums; nothing if none
   // can.
@@ -344,13 +344,14 @@ class RestitutionOfDampers : EngineOfDampers<Real, Force, Observer> {
       Joining all = joining_.back();
       all.mass += masses_.nu[i];
       all.momentum += masses_.nu[i] * masses_.w(i);
-      all.kick += masses_.nu[i] * (1 + masses_.e[i]) * each.speed;
+      all.impulse += masses_.nu[i] * (1 + masses_.e[i]) * each.speed;
       all.moves += each.moves;
-      all.kicks += masses_.nu[i] / (1 + masses_.nu[i]) * (1 + masses_.e[i]) * each.speed / each.settles.lost;
+      all.given_speed +=
+          masses_.nu[i] / (1 + masses_.nu[i]) * (1 + masses_.e[i]) * each.speed / each.settles.lost;
       if (longest < each.lasts) longest = each.lasts;
       const Real of_others = slowest, own = each.settles.per_speed();
       if (slowest < own) slowest = own;
-      all.duration = longest + all.kicks * (joining_.size() == 1 ? of_others : slowest) * heavy;
+      all.duration = longest + all.given_speed * (joining_.size() == 1 ? of_others : slowest) * heavy;
       joining_.push_back(all);
     }
     Real most{0};                     // a bound on |x''|
@@ -383,7 +384,7 @@ class RestitutionOfDampers : EngineOfDampers<Real, Force, Observer> {
     const Real speed = absolute(v_ + all.momentum / (mass_ + all.mass));
     if (!(8 * all.moves <= epsilon * (absolute(x_) + speed * all.duration)) || !ends_soon(all.duration))
       return false;
-    const bool may_turn = speed <= all.kick / mass_ + a * all.duration;
+    const bool may_turn = speed <= all.impulse / mass_ + a * all.duration;
     return !may_turn || 2 * all.duration <= epsilon * tracker_.now();
   }
   Real loses(std::size_t i) const { return masses_.nu[i] * (1 - masses_.e[i] * masses_.e[i]); }

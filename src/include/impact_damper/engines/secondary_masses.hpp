@@ -44,9 +44,7 @@ struct SecondaryMasses {
     const Real wall = away[i] > 0 ? Real(0) : clearance[i];
     return {double(Real(wall + away[i] * distance)), double(Real(away[i] * speed))};
   }
-  double kinetic(std::size_t i, const Real& v) const {
-    return kinetic_energy(nu[i], v, w(i));
-  }
+  double kinetic(std::size_t i, const Real& v) const { return kinetic_energy(nu[i], v, w(i)); }
 
   // Moves all masses in flight by a time t in which x departs from its straight line by dx and x' changes by
   // dv. The masses that are held are moved as well, and the caller sets them anew: to leave them out would

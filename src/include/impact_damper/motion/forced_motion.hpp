@@ -6,9 +6,9 @@
 #pragma once
 
 #include "impact_damper/events/exclusion.hpp"
+#include "impact_damper/events/halley.hpp"
 #include "impact_damper/events/impact_prediction.hpp"
 #include "impact_damper/events/root_isolation.hpp"
-#include "impact_damper/events/root_of_series.hpp"
 #include "impact_damper/motion/driven_series.hpp"
 #include "impact_damper/motion/lead.hpp"
 #include "impact_damper/motion/state.hpp"
@@ -193,13 +193,13 @@ class ForcedMotion {
   }
   // Returns the last turning point of x, x' = 0, before t, the first zero of x''; nothing where it has no
   // closed form.
-  std::optional<Real> turn_before(const Real& t) const {
+  std::optional<Real> turning_point_before(const Real& t) const {
     const Real& half_period = oscillator_.half_period();
     if (forcing_ || !(half_period < std::numeric_limits<Real>::infinity()) || !(t < half_period)) return {};
-    return t - oscillator_.turn_before();
+    return t - oscillator_.peak_to_inflection();
   }
   // Returns |x'| at a zero of x'' at t, where x is -2a/b times x'; nothing where it has no closed form.
-  std::optional<Real> speed_at_turn(const Real& t) const {
+  std::optional<Real> speed_at_inflection(const Real& t) const {
     if (forcing_ || !(oscillator_.half_period() < std::numeric_limits<Real>::infinity())) return {};
     const auto x = derivatives<4>(x0_, v0_, Real(0), Real(1));
     return oscillator_.height(x[1], x[2], t);
@@ -210,9 +210,7 @@ class ForcedMotion {
                                     const Real& span) const {
     const Change now = at(t);
     const auto x = instant<7>(now.x, now.v, t);
-    return {{sign * x[order], sign * x[order + 1], sign * x[order + 2], x.bound(order + 3, span)},
-            {},
-            std::numeric_limits<Real>::infinity()};
+    return {{sign * x[order], sign * x[order + 1], sign * x[order + 2], x.bound(order + 3, span)}};
   }
 
   // The largest modulus of an eigenvalue, or omega_f if that is larger.
