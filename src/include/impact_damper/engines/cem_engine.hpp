@@ -16,7 +16,6 @@
 #include "impact_damper/engines/half_cycle_tracker.hpp"
 #include "impact_damper/engines/observer.hpp"
 #include "impact_damper/math/elementary.hpp"
-#include "impact_damper/motion/lead.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {
@@ -111,46 +110,19 @@ class CemEngine {
  private:
   static Real sign(const Real& value) { return Real((value > 0) - (value < 0)); }
 
-  // Begins the run in the state s, with y instead of q. Contacts at the beginning, which no impact begins,
-  // are those of masses that overlap a wall, then of those at rest at a wall and pressed to it, as y''
-  // decides, or y''' where that is zero to rounding: by where y is a step later, y'' h^2/2 + y''' h^3/6. In
-  // the stuck regime, where both are zero to rounding, the first later derivative that is not decides; else
-  // the first step does.
+  // Begins the run in the state s, with y instead of q.
   void begin(State s) {
-    const ForEach<Real> y0 = s.q;
-    const auto begin_contact = [&](std::size_t i, std::optional<Wall> wall, bool stuck = false) {
-      masses_.set_wall(i, wall, stuck);
-      s.q[i] -= masses_[i].origin_of_q();
-    };
+    const auto [second, third] = masses_.begin_contacts(s, steps_.h(), joins_);
+    begin_segment(Real(0), s);
     bool impact_at_once = false;
     for (std::size_t i = 0; i < masses_.size(); ++i) {
-      const Real &c = masses_[i].clearance, &w = s.w[i];
-      begin_contact(i, y0[i] < 0   ? std::optional(Wall::left)
-                       : y0[i] > c ? std::optional(Wall::right)
-                                   : std::nullopt);
-      impact_at_once = impact_at_once || (y0[i] == 0 && w < 0) || (y0[i] == c && w > 0);
+      if (masses_.rests(s, i) && !masses_[i].stuck) steps_.lead_from_rest(i, second, third);
+      impact_at_once = impact_at_once || masses_.meets_wall(s, i);
     }
-    const auto rests = [&](std::size_t i) {
-      return (y0[i] == 0 || y0[i] == masses_[i].clearance) && s.w[i] == 0;
-    };
-    const Forcing<Real>& force = masses_.force;
-    const Real second = -masses_.second_of_x(Real(0), s);  // y''
-    const Real third = s.v - force.amplitude * force.frequency;
-    const Lead<Real> lead = lead_of_x(Real(2 * masses_.zeta), Real(1), force, force.phase(Real(0)), s.x, s.v);
-    const bool by_lead = joins_ && lead.order > 3 && masses_.in_contact.empty();
-    const Real moves = by_lead ? Real(-lead.value) : Real(second + steps_.h() / 3 * third);
-    for (std::size_t i = 0; i < masses_.size(); ++i) {
-      if (!rests(i)) continue;
-      if (y0[i] == 0 && moves < 0) begin_contact(i, Wall::left, joins_);
-      if (y0[i] > 0 && moves > 0) begin_contact(i, Wall::right, joins_);
-    }
-    begin_segment(Real(0), s);
-    for (std::size_t i = 0; i < masses_.size(); ++i)
-      if (rests(i) && !masses_[i].stuck) steps_.lead_from_rest(i, second, third);
     // A force moves a primary mass at rest in the middle by x''' h^3/6, which the second-order start leaves
     // out, too. It is added, unless an impact moves the mass.
     const bool moved_by_force = s.x == 0 && s.v == 0 && second == 0 && !impact_at_once;
-    if (moved_by_force) steps_.lead_x_by(force.amplitude * force.frequency);
+    if (moved_by_force) steps_.lead_x_by(masses_.force.amplitude * masses_.force.frequency);
 
     half_cycles_.take_side(sign(s.x != 0 ? s.x : s.v));
     trend_ = sign(s.v);
@@ -328,9 +300,7 @@ class CemEngine {
     half_cycles_.crossing(steps_.begin() + at, observer_);
     trend_ = sign(steps_.x().dx);
     consider_peak(at, span);  // x' may have changed its sign after x did
-    if (until_amplitude_ && half_cycles_.last_amplitude() < Real(*until_amplitude_))
-      return finish(StopReason::amplitude, at);
-    if (half_cycles_.complete() >= budget_.max_half_cycles) finish(StopReason::half_cycle_budget, at);
+    if (const auto reason = half_cycles_.stops(until_amplitude_, budget_)) finish(*reason, at);
   }
   void consider_peak(const Real& from, const Real& to) {
     const Arc<Real> x = steps_.x_arc();

@@ -14,6 +14,7 @@
 
 #include "impact_damper/engines/cem_scheme.hpp"
 #include "impact_damper/engines/damper_order.hpp"
+#include "impact_damper/motion/lead.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {
@@ -124,7 +125,42 @@ struct CemMasses {
     }
   }
 
+  // Puts masses to the walls with which they are in contact at a release in the state s, with y instead of q,
+  // which becomes q; no impact begins these contacts. They are masses that overlap a wall, then those at rest
+  // at a wall and pressed to it, as y'' decides, or y''' where that is zero to rounding: by where y is a step
+  // later, y'' h^2/2 + y''' h^3/6. In the stuck regime (joins), where both are zero to rounding, the first
+  // later derivative that is not decides; else the first step does. Returns y'' and y''' of a mass at rest.
+  std::pair<Real, Real> begin_contacts(State& s, const Real& h, bool joins) {
+    const auto begin_contact = [&](std::size_t i, std::optional<Wall> wall, bool sticks = false) {
+      set_wall(i, wall, sticks);
+      s.q[i] -= all[i].origin_of_q();
+    };
+    for (std::size_t i = 0; i < size(); ++i)
+      begin_contact(i, s.q[i] < 0                  ? std::optional(Wall::left)
+                       : s.q[i] > all[i].clearance ? std::optional(Wall::right)
+                                                   : std::nullopt);
+    const Real second = -second_of_x(Real(0), s), third = s.v - force.amplitude * force.frequency;
+    const Lead<Real> lead = lead_of_x(Real(2 * zeta), Real(1), force, force.phase(Real(0)), s.x, s.v);
+    const bool by_lead = joins && lead.order > 3 && in_contact.empty();
+    const Real moves = by_lead ? Real(-lead.value) : Real(second + h / 3 * third);
+    for (std::size_t i = 0; i < size(); ++i) {
+      if (!rests(s, i)) continue;
+      if (s.q[i] == 0 && moves < 0) begin_contact(i, Wall::left, joins);
+      if (s.q[i] > 0 && moves > 0) begin_contact(i, Wall::right, joins);
+    }
+    return {second, third};
+  }
+
   Real y(const State& s, std::size_t i) const { return all[i].origin_of_q() + s.q[i]; }
+  // Whether a mass is at rest at a wall, or moves into it.
+  bool rests(const State& s, std::size_t i) const {
+    const Real at = y(s, i);
+    return (at == 0 || at == all[i].clearance) && s.w[i] == 0;
+  }
+  bool meets_wall(const State& s, std::size_t i) const {
+    const Real at = y(s, i), &w = s.w[i];
+    return (at == 0 && w < 0) || (at == all[i].clearance && w > 0);
+  }
   Real force_at(const Real& time) const { return value_of(force, time); }
   Real wall_force(const State& s, std::size_t i) const {  // divided by the secondary mass
     const CemMass<Real>& m = all[i];

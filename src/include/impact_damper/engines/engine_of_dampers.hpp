@@ -46,7 +46,7 @@ class EngineOfDampers {
   // Reports a sample at the time t of a motion. now: x, x' and their departures from a straight line then.
   // held(set): calls set(i, u, u') for each mass that is held.
   template <class Change, class Held>
-  void tell_sample(const Real& t, const Change& now, Held&& held) {
+  void report_sample(const Real& t, const Change& now, Held&& held) {
     const auto set = [&](std::size_t i, const Real& u, const Real& u1) {
       places_[masses_.number[i]] = masses_.place(i, u, u1);
     };
@@ -71,7 +71,7 @@ class EngineOfDampers {
   }
 
   // Reports an impact of the i-th mass.
-  void tell_impact(std::size_t i, Wall wall) {
+  void report_impact(std::size_t i, Wall wall) {
     observer_.impact(double(tracker_.now()), wall, double(masses_.w(i)), double(x_), masses_.number[i]);
   }
   void hold(std::size_t i, const Real& since) {

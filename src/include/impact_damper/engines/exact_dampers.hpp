@@ -131,10 +131,9 @@ class ExactOfDampers : EngineOfDampers<Real, Force, Observer> {
   // Where x'' is zero to rounding, the first later derivative that is not zero decides.
   Real side_of_acceleration() {
     list_pushed();
-    const Real tells = lead_of_x<Real>(2 * system_.zeta, Real(1), system_.forcing,
-                                       system_.forcing.phase(tracker_.now()), x_, v_, pushed_)
-                           .value;
-    return tells > 0 ? Real(1) : tells < 0 ? Real(-1) : Real(0);
+    return lead_of_x<Real>(2 * system_.zeta, Real(1), system_.forcing, system_.forcing.phase(tracker_.now()),
+                           x_, v_, pushed_)
+        .side();
   }
 
   // Follows the motion without a contact until a wall is met.
@@ -197,7 +196,7 @@ class ExactOfDampers : EngineOfDampers<Real, Force, Observer> {
         [&](const Real& t) {
           const State<Real> now = state(t);
           const auto [dx, dv] = change && t == until ? *change : change_of_x(contact, t, now.x, now.v);
-          return typename Piece::Change{now.x, now.v, dx, dv};
+          return Displacement<Real>{now.x, now.v, dx, dv};
         },
         [&](std::size_t, const Real& t) {
           const State<Real> now = state(t);
@@ -393,7 +392,7 @@ class ExactOfDampers : EngineOfDampers<Real, Force, Observer> {
       };
     };
     const Work<Real> works = tracker_.pass(motion, until, end, wall_damping, [&](const Real& t) {
-      Base::tell_sample(t, change(t), held_at(t));
+      Base::report_sample(t, change(t), held_at(t));
     });
     const Real t = tracker_.passed();
     if (t > 0) Base::advance(t, change(t), held_at(t));
@@ -411,7 +410,7 @@ class ExactOfDampers : EngineOfDampers<Real, Force, Observer> {
     std::ranges::sort(events_, {}, [&](const Event& event) { return masses_.number[event.index]; });
     for (const auto& [i, time, met] : events_) {
       if (!met) continue;
-      Base::tell_impact(i, *met);
+      Base::report_impact(i, *met);
       masses_.arrive(i, *met);
       enter(i);
       if (!observer_.wants_energy()) continue;

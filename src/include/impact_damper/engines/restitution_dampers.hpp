@@ -97,7 +97,7 @@ class RestitutionOfDampers : EngineOfDampers<Real, Force, Observer> {
         if (masses_.held[i]) set(i, Real(0), Real(0));
     };
     tracker_.pass(motion, until, end, Real(0),
-                  [&](const Real& t) { Base::tell_sample(t, motion.primary().at(t), stuck); });
+                  [&](const Real& t) { Base::report_sample(t, motion.primary().at(t), stuck); });
     const Real t = tracker_.passed();
     if (t == 0) return;
     Base::advance(t, t == until ? last : motion.primary().at(t), stuck);
@@ -120,11 +120,11 @@ class RestitutionOfDampers : EngineOfDampers<Real, Force, Observer> {
       masses_.arrive(i, each.wall);
       at_walls_.push_back(mass_at_wall(i));
     }
-    told_.assign(at_walls_.begin() + std::ptrdiff_t(resting), at_walls_.end());
-    std::sort(told_.begin(), told_.end(), [&](const auto& one, const auto& other) {
+    reported_.assign(at_walls_.begin() + std::ptrdiff_t(resting), at_walls_.end());
+    std::sort(reported_.begin(), reported_.end(), [&](const auto& one, const auto& other) {
       return masses_.number[one.index] < masses_.number[other.index];
     });
-    for (const MassAtWall<Real>& each : told_) Base::tell_impact(each.index, masses_.wall(each.index));
+    for (const MassAtWall<Real>& each : reported_) Base::report_impact(each.index, masses_.wall(each.index));
     std::sort(at_walls_.begin(), at_walls_.end(),
               [](const auto& one, const auto& other) { return one.index < other.index; });
     const Real jump = jump_of_velocity<Real>(at_walls_);
@@ -137,7 +137,7 @@ class RestitutionOfDampers : EngineOfDampers<Real, Force, Observer> {
     }
     v_ += jump;
     if (observer_.wants_energy()) {
-      for (const MassAtWall<Real>& each : told_) {
+      for (const MassAtWall<Real>& each : reported_) {
         const Real after = masses_.u1[each.index];
         const Real impulse = each.nu * (after - (each.speed - each.away * jump));
         const Real loss = -impulse * (each.speed + after) / 2;  // (M17.4)
@@ -184,9 +184,9 @@ class RestitutionOfDampers : EngineOfDampers<Real, Force, Observer> {
     if (some_rest_) joined_.emplace(system_.zeta / mass_, 1 / mass_, system_.forcing);
   }
   Acceleration acceleration() const {
-    const auto [order, value] = lead_of_x(Real(2 * system_.zeta), Real(1), system_.forcing,
-                                          system_.forcing.phase(tracker_.now()), x_, v_);
-    return {order == 2 ? value : Real(0), value > 0 ? Real(1) : value < 0 ? Real(-1) : Real(0)};
+    const Lead<Real> lead = lead_of_x(Real(2 * system_.zeta), Real(1), system_.forcing,
+                                      system_.forcing.phase(tracker_.now()), x_, v_);
+    return {lead.order == 2 ? lead.value : Real(0), lead.side()};
   }
   void stick(std::size_t i, const Real& later) {
     Base::hold(i, Real(tracker_.now() + later));
@@ -411,8 +411,8 @@ class RestitutionOfDampers : EngineOfDampers<Real, Force, Observer> {
   std::optional<Driven<Real, Force>> joined_;  // their oscillator, if anything sticks
   Real push_{0};                               // the side on which masses stick, 1 or -1; 0: none sticks
   bool some_rest_ = false;
-  Real not_followed_{0};                           // how long the chattering whose limit has been taken lasts
-  std::vector<MassAtWall<Real>> at_walls_, told_;  // told_: only those whose impacts are reported
+  Real not_followed_{0};  // how long the chattering whose limit has been taken lasts
+  std::vector<MassAtWall<Real>> at_walls_, reported_;  // reported_: those that meet their walls
   std::vector<Chattering> chattering_;
   std::vector<Joining> joining_;  // of the first 0, 1, 2 ... of them
   std::vector<char> joins_;

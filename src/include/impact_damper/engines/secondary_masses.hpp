@@ -138,8 +138,6 @@ struct Meeting {
 template <class Real, class Force>
 class NextMeeting {
  public:
-  using Change = typename ForcedMotion<Real, Force>::Change;
-
   // Returns all masses that meet walls at the next instant (17.2), in their order. The first must do so
   // before `until`; the result is empty if none does. primary: the motion of x from now on.
   std::span<const Meeting<Real>> find(const SecondaryMasses<Real>& masses,
@@ -168,7 +166,7 @@ class NextMeeting {
     return found_;
   }
   // The state of the primary mass at t, known from the search if t is the time that it found.
-  Change primary_at(const ForcedMotion<Real, Force>& primary, const Real& t) const {
+  Displacement<Real> primary_at(const ForcedMotion<Real, Force>& primary, const Real& t) const {
     return at_earliest_ && t == earliest_ ? *at_earliest_ : primary.at(t);
   }
 
@@ -242,7 +240,7 @@ class NextMeeting {
   std::vector<Real> estimates_;
   std::vector<Meeting<Real>> found_;
   Real earliest_{0};
-  std::optional<Change> at_earliest_;
+  std::optional<Displacement<Real>> at_earliest_;
   std::optional<Bounds> bounds_;
 };
 

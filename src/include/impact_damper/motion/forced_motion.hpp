@@ -40,11 +40,8 @@ class ForcedMotion {
         v0_(v0),
         cached_(*this) {}
 
-  struct Change {
-    Real x, v;    // displacement and velocity at t
-    Real dx, dv;  // x - x0 - v0 t and v - v0, without cancellation
-  };
-  Change at(const Real& t) const {
+  // The departures are computed without cancellation.
+  Displacement<Real> at(const Real& t) const {
     if (t == 0) return {x0_, v0_, Real(0), Real(0)};
     if constexpr (forced) {
       if (t <= reach()) {
@@ -53,7 +50,7 @@ class ForcedMotion {
       }
     }
     const Propagator<Real> p = oscillator_.propagate(t);
-    Change now;
+    Displacement<Real> now;
     now.x = x0_ * p.c + v0_ * p.s;
     now.dx = x0_ * p.c1 + v0_ * p.s1;
     const Real from_x = -x0_ * oscillator_.b() * p.s;
@@ -208,7 +205,7 @@ class ForcedMotion {
   // Encloses sign times the `order`-th derivative of x for a time `span` from t on.
   LocalEnclosure<Real> enclosure_at(std::size_t order, const Real& sign, const Real& t,
                                     const Real& span) const {
-    const Change now = at(t);
+    const Displacement<Real> now = at(t);
     const auto x = instant<7>(now.x, now.v, t);
     return {{sign * x[order], sign * x[order + 1], sign * x[order + 2], x.bound(order + 3, span)}};
   }

@@ -112,17 +112,13 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force>, Real> {
   }
 
   const Real& length() const { return length_; }
-  // x and x' at t, and their differences dx and dv from x0 + v0 t and v0.
-  struct Change {
-    Real x, v, dx, dv;
-  };
-  Change change(const Real& t) const {
+  Displacement<Real> change(const Real& t) const {
     const SeriesAt<Real> by = Departure<Real, joint_terms / 2>{x_}.at(t * over_h_);
     const Real v0 = over_h_ * get(x_, 1), dv = over_h_ * by.u1;
     return {get(x_, 0) + (v0 * t + by.u), v0 + dv, by.u, dv};
   }
   State<Real> at(const Real& t) const {
-    const Change now = change(t);
+    const Displacement<Real> now = change(t);
     return {now.x, now.v, Real(0), Real(0)};
   }
   // Returns q and q' of the i-th wall at t.
