@@ -2,6 +2,7 @@
 // and how it is advanced, recorded and ended.
 #pragma once
 
+#include <cstdint>
 #include <utility>
 #include <vector>
 
