@@ -235,7 +235,7 @@ TEST_CASE("a flight meets the wall that the certified search finds, when it find
     const double begin = random.uniform(0, 10), horizon = 10;
     Search<double> search{bounded_span(system)};
     const Flight<double> flight(system, begin, start);
-    const auto lead = flight.lead_of_y();
+    const auto lead = flight.derivatives_of_y();
     const double away = left ? 1 : -1;
     if (w == 0 && (start.y == 0 || start.y == 1) && !(away * lead[2] > 0)) continue;
     const auto found = flight.next_wall(horizon, search), expected = flight.search_wall(0, horizon, search);
@@ -287,7 +287,7 @@ TEST_CASE("a contact ends when the certified search says, in the state that its 
     if (walls.short_contact && scene.force_amplitude != 0) {
       const auto phase = walls.forcing.phase(begin);
       const double f0 = scene.force_amplitude;
-      forced += bool(walls.short_contact({start.x, start.v, start.w, f0 * phase.sin, f0 * phase.cos}));
+      forced += bool(walls.short_contact.end({start.x, start.v, start.w, f0 * phase.sin, f0 * phase.cos}));
     }
     // What rounding makes of q, by what it is the sum of, over y' at the end.
     const auto slow = contact.slow_at(time), fast = contact.fast_at(time);
@@ -420,7 +420,7 @@ TEST_CASE("a contact with a wall softer than the spring ends when the mass first
     const State<double> start{signed_log(random, 1e-3, 30), signed_log(random, 1e-3, 30), 0,
                               -random.log_uniform(1e-6, 30)};
     const Contact<double> contact(walls, 0.0, start, Wall::left);
-    short_contacts += walls.short_contact && walls.short_contact({start.x, start.v, start.w});
+    short_contacts += walls.short_contact && walls.short_contact.end({start.x, start.v, start.w});
     const auto found = contact.leave(1000, search), expected = contact.search_leave(1000, search);
     CAPTURE(n);
     CHECK(found.has_value() == expected.has_value());

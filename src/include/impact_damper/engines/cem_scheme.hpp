@@ -127,29 +127,38 @@ struct ForceAtSteps {
   Real f = 0, df = 0, curb = 0;
 };
 
-// The parabola through three successive steps of one coordinate, about the middle one; bend: its second
-// derivative.
+// The parabola through three successive steps of one coordinate, about the middle one: its value, slope and
+// second derivative there.
 template <class Real>
 struct Arc {
-  Real g, slope, bend;
+  Real g, slope, second;
 
-  Real at(const Real& t) const { return g + t * (slope + t * bend / 2); }
-  Real slope_at(const Real& t) const { return slope + t * bend; }
-  Arc times(const Real& factor) const { return {factor * g, factor * slope, factor * bend}; }
+  Real at(const Real& t) const { return g + t * (slope + t * second / 2); }
+  Real slope_at(const Real& t) const { return slope + t * second; }
+  Arc times(const Real& factor) const { return {factor * g, factor * slope, factor * second}; }
 
   // Returns the time in [0, h] at which an arc that begins at or above zero falls through it.
   Real fall(const Real& h) const {
-    const Real square = slope * slope - 2 * bend * g;
+    const Real square = slope * slope - 2 * second * g;
     const Real root = square > 0 ? square_root(square) : Real(0);
-    if (slope > 0) return bend < 0 ? std::clamp((slope + root) / -bend, Real(0), h) : h;
+    if (slope > 0) return second < 0 ? std::clamp((slope + root) / -second, Real(0), h) : h;
     return root > slope ? std::clamp(2 * g / (root - slope), Real(0), h) : Real(0);
   }
   // Returns the time of its extremum in [from, to], or the end nearest to it; `from` where rounding has `to`
   // before it.
   Real extremum(const Real& from, const Real& to) const {
-    return bend == 0 || !(from < to) ? from : std::clamp(-slope / bend, from, to);
+    return second == 0 || !(from < to) ? from : std::clamp(-slope / second, from, to);
   }
 };
+// A coordinate at a step, and the increment that led there.
+template <class Real>
+struct CemMoment {
+  Real x, dx;
+};
+template <class Real>
+Arc<Real> arc_of(const CemMoment<Real>& before, const CemMoment<Real>& now, const Real& h) {
+  return {before.x, (before.dx + now.dx) / (2 * h), (now.dx - before.dx) / (h * h)};
+}
 
 [[noreturn]] void fail_of_overflow(double time, double step);
 // Returns `steps` rounded up, at least 1 and at most 1e15.

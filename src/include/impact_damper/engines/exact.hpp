@@ -79,8 +79,7 @@ Outcome run_exact(const ContactModes<Real, Force>& walls, const System<Real, For
       if (end) state = copied(end->state);
       const Work<Real> works =
           tracker.pass(contact, end ? end->time : tracker.remaining(), state, wall_damping);
-      if (observer.wants_contacts())
-        observer.contact(double(begin), tracker.stopped() ? tracker.end_time() : double(tracker.now()), wall);
+      if (observer.wants_contacts()) observer.contact(double(begin), tracker.time(), wall);
       if (observer.wants_energy()) {
         losses += works.wall;
         if (by_impact) {
@@ -98,7 +97,7 @@ Outcome run_exact(const ContactModes<Real, Force>& walls, const System<Real, For
     }
   }
   tracker.finish(state, depth, losses);
-  return {*tracker.stopped(), tracker.end_time()};
+  return tracker.outcome();
 }
 
 }  // namespace impact_damper

@@ -9,19 +9,16 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
-#include <span>
-#include <utility>
 #include <vector>
 
 #include "impact_damper/base/floating_point.hpp"
 #include "impact_damper/engines/checked.hpp"
-#include "impact_damper/engines/observer.hpp"
-#include "impact_damper/engines/run_tracker.hpp"
-#include "impact_damper/engines/secondary_masses.hpp"
+#include "impact_damper/engines/engine_of_dampers.hpp"
 #include "impact_damper/math/scalar.hpp"
 #include "impact_damper/motion/contact_without_modes.hpp"
 #include "impact_damper/motion/contact_work.hpp"
@@ -46,22 +43,19 @@ std::shared_ptr<const ContactModes<Real, Force>> modes_of_damper(const Scene& sc
 }
 
 template <class Real, class Force, class Observer>
-class ExactOfDampers {
+class ExactOfDampers : EngineOfDampers<Real, Force, Observer> {
+  using Base = EngineOfDampers<Real, Force, Observer>;
+  using Base::energy_of, Base::losses_, Base::masses_, Base::next_meeting_, Base::observer_, Base::system_,
+      Base::tracker_, Base::v_, Base::x_;
+
  public:
   // modes: empty, or those that several runs of one scene share.
   ExactOfDampers(const System<Real, Force>& system, const Scene& scene, const Exact& options,
                  Observer& observer, const ModesOfDampers<Real, Force>& modes = {})
-      : system_(system),
+      : Base(system, scene, options.budget, options.max_steps, observer),
         scene_(scene),
         options_(options),
-        observer_(observer),
-        tracker_(scene, system, options.budget, options.max_steps, observer),
-        masses_(scene.dampers),
-        walls_(scene.dampers.size()),
-        x_(scene.x0),
-        v_(scene.v0),
-        energy_(scene.dampers.size()),
-        places_(scene.dampers.size()) {
+        walls_(scene.dampers.size()) {
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       const SceneDamper& damper = scene.dampers[masses_.number[i]];
       walls_[i].stiffness = Real(damper.wall_stiffness) / Real(damper.mass_ratio);
@@ -71,12 +65,10 @@ class ExactOfDampers {
   }
 
   Outcome run() {
-    if (observer_.wants_energy()) {
-      for (std::size_t i = 0; i < masses_.size(); ++i)
-        energy_[masses_.number[i]].initial_kinetic = masses_.kinetic(i, v_);
-    }
+    const bool balance = observer_.wants_energy();
+    if (balance) Base::note_kinetic(&DamperEnergy::initial_kinetic);
     begin_contacts();
-    if (observer_.wants_energy()) tracker_.begin(energy_now());
+    if (balance) tracker_.begin(energy_now());
     while (!tracker_.stopped()) {
       if (in_contact_.empty()) {
         fly();
@@ -88,17 +80,11 @@ class ExactOfDampers {
         push_alone<Contact<Real, Force>>(modes);
       }
     }
-    if (observer_.wants_energy()) {
-      for (std::size_t i = 0; i < masses_.size(); ++i)
-        energy_[masses_.number[i]].final_kinetic = masses_.kinetic(i, v_);
-      const Energy last = energy_now();
-      while (!in_contact_.empty()) leave(in_contact_.front());
-      tracker_.finish(last, losses_);
-      observer_.energy_balance().dampers = std::move(energy_);
-    } else {
-      while (!in_contact_.empty()) leave(in_contact_.front());
-    }
-    return {*tracker_.stopped(), tracker_.end_time()};
+    if (balance) Base::note_kinetic(&DamperEnergy::final_kinetic);
+    const Energy last = energy_now();
+    while (!in_contact_.empty()) leave(in_contact_.front());
+    if (balance) Base::finish(last);
+    return tracker_.outcome();
   }
 
  private:
@@ -144,10 +130,9 @@ class ExactOfDampers {
   // Where x'' is zero to rounding, the first later derivative that is not zero decides.
   Real side_of_acceleration() {
     list_pushed();
-    const Real tells = lead_of_x<Real>(2 * system_.zeta, Real(1), system_.forcing,
-                                       system_.forcing.phase(tracker_.now()), x_, v_, pushed_)
-                           .value;
-    return tells > 0 ? Real(1) : tells < 0 ? Real(-1) : Real(0);
+    return lead_of_x<Real>(2 * system_.zeta, Real(1), system_.forcing, system_.forcing.phase(tracker_.now()),
+                           x_, v_, pushed_)
+        .side();
   }
 
   // Follows the motion without a contact until a wall is met.
@@ -210,7 +195,7 @@ class ExactOfDampers {
         [&](const Real& t) {
           const State<Real> now = state(t);
           const auto [dx, dv] = change && t == until ? *change : change_of_x(contact, t, now.x, now.v);
-          return typename Piece::Change{now.x, now.v, dx, dv};
+          return Displacement<Real>{now.x, now.v, dx, dv};
         },
         [&](std::size_t, const Real& t) {
           const State<Real> now = state(t);
@@ -396,37 +381,21 @@ class ExactOfDampers {
   template <class Motion, class ChangeAt, class OverlapAt>
   Work<Real> pass(const Motion& motion, const Real& until, State<Real>& end, const Real& wall_damping,
                   ChangeAt&& change, OverlapAt&& overlap) {
+    const auto held_at = [&](const Real& t) {
+      return [this, &overlap, &t](auto&& set) {
+        for (std::size_t k = 0; k < in_contact_.size(); ++k) {
+          const auto [q, w] = overlap(k, t);
+          const Real& away = masses_.away[in_contact_[k]];
+          set(in_contact_[k], Real(away * q), Real(away * w));
+        }
+      };
+    };
     const Work<Real> works = tracker_.pass(motion, until, end, wall_damping, [&](const Real& t) {
-      const auto now = change(t);
-      for (std::size_t i = 0; i < masses_.size(); ++i) {
-        const Real& away = masses_.away[i];
-        if (!masses_.held[i])
-          tell_place(i, Real(masses_.u[i] + (masses_.u1[i] * t - away * now.dx)),
-                     Real(masses_.u1[i] - away * now.dv));
-      }
-      for (std::size_t k = 0; k < in_contact_.size(); ++k) {
-        const auto [q, w] = overlap(k, t);
-        const Real& away = masses_.away[in_contact_[k]];
-        tell_place(in_contact_[k], Real(away * q), Real(away * w));
-      }
-      observer_.sample(observer_.next_sample(), double(now.x), double(now.v), places_);
+      Base::report_sample(t, change(t), held_at(t));
     });
     const Real t = tracker_.passed();
-    if (t == 0) return works;
-    const auto now = change(t);
-    masses_.fly(t, now.dx, now.dv);
-    for (std::size_t k = 0; k < in_contact_.size(); ++k) {
-      const std::size_t i = in_contact_[k];
-      const auto [q, w] = overlap(k, t);
-      masses_.u[i] = masses_.away[i] * q;
-      masses_.u1[i] = masses_.away[i] * w;
-    }
-    x_ = now.x;
-    v_ = now.v;
+    if (t > 0) Base::advance(t, change(t), held_at(t));
     return works;
-  }
-  void tell_place(std::size_t i, const Real& u, const Real& u1) {
-    places_[masses_.number[i]] = masses_.place(i, u, u1);
   }
 
   // Carries out events_, unless the run has stopped: first the masses that leave a wall, then those that meet
@@ -440,7 +409,7 @@ class ExactOfDampers {
     std::ranges::sort(events_, {}, [&](const Event& event) { return masses_.number[event.index]; });
     for (const auto& [i, time, met] : events_) {
       if (!met) continue;
-      observer_.impact(double(tracker_.now()), *met, double(masses_.w(i)), double(x_), masses_.number[i]);
+      Base::report_impact(i, *met);
       masses_.arrive(i, *met);
       enter(i);
       if (!observer_.wants_energy()) continue;
@@ -449,62 +418,44 @@ class ExactOfDampers {
     }
   }
   void enter(std::size_t i) {
-    masses_.held[i] = true;
-    masses_.held_since[i] = double(tracker_.now());
+    Base::hold(i, tracker_.now());
     in_contact_.insert(std::ranges::lower_bound(in_contact_, i), i);
     pieces_together_ = 0;
   }
   void leave(std::size_t i) {
-    const double end = tracker_.stopped() ? tracker_.end_time() : double(tracker_.now());
-    if (observer_.wants_contacts())
-      observer_.contact(masses_.held_since[i], end, masses_.wall(i), masses_.number[i]);
+    Base::let_go(i);
     OwnWall& wall = walls_[i];
     if (observer_.wants_energy()) {
       EnergyBalance& balance = observer_.energy_balance();
       losses_ += wall.work;
       if (wall.impact) {
         balance.impact_loss[*wall.impact] = double(wall.work);
-        energy_[masses_.number[i]].impact_loss += double(wall.work);
+        energy_of(i).impact_loss += double(wall.work);
       } else {
         balance.contact_loss += double(wall.work);
-        energy_[masses_.number[i]].contact_loss += double(wall.work);
+        energy_of(i).contact_loss += double(wall.work);
       }
     }
     wall.impact.reset();
     wall.work = 0;
     masses_.u[i] = 0;
-    masses_.held[i] = false;
     std::erase(in_contact_, i);
     pieces_together_ = 0;
   }
 
   Energy energy_now() const {
-    Real kinetic = v_ * v_, paper = v_ * v_, wall{0};
-    for (std::size_t i = 0; i < masses_.size(); ++i) {
-      const Real w = masses_.w(i), z1 = v_ + w;
-      kinetic += masses_.nu[i] * z1 * z1;
-      paper += masses_.nu[i] * (v_ * v_ + w * w);
-      if (masses_.held[i]) wall += masses_.nu[i] * walls_[i].stiffness * (masses_.u[i] * masses_.u[i]);
-    }
-    return {double(Real(kinetic / 2)), double(Real(x_ * x_ / 2)), double(Real(wall / 2)),
-            double(Real((paper + x_ * x_) / 2))};
+    return Base::energy_now([&](std::size_t i) {
+      const Real& u = masses_.u[i];
+      return masses_.held[i] ? Real(masses_.nu[i] * walls_[i].stiffness * (u * u)) : Real(0);
+    });
   }
 
   using Piece = JointContact<Real, Force>;
   using SlowMode = JointSlowMode<Real, Force>;
-  const System<Real, Force>& system_;
   const Scene& scene_;
   const Exact& options_;
-  Observer& observer_;
-  RunTracker<Real, Force, Observer> tracker_;
-  SecondaryMasses<Real> masses_;
   std::vector<OwnWall> walls_;           // of each mass
   std::vector<std::size_t> in_contact_;  // ascending
-  Real x_, v_;
-  Real losses_{0};
-  std::vector<DamperEnergy> energy_;  // by number in the scene
-  std::vector<PlaceInCavity> places_;
-  NextMeeting<Real, Force> next_meeting_;
   std::vector<Event> events_;
   std::vector<PushedWall<Real>> pushed_;
   Piece piece_;

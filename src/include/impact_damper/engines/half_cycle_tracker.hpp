@@ -8,6 +8,7 @@
 
 #include "impact_damper/events/root_isolation.hpp"
 #include "impact_damper/motion/motion.hpp"
+#include "impact_damper/run.hpp"
 
 namespace impact_damper {
 
@@ -20,7 +21,6 @@ class HalfCycleTracker {
   // Returns 1 or -1; 0 while x has not moved since the release.
   const Real& side() const { return side_; }
   const Real& amplitude() const { return amplitude_; }
-  std::int64_t complete() const { return complete_; }
 
   void take_side(const Real& side) { side_ = side; }
   // Takes |x| = `height` at a turning point of x or an end of a motion: the largest of the half cycle is
@@ -42,8 +42,12 @@ class HalfCycleTracker {
     begin_ = peak_time_ = time;
     amplitude_ = 0;
   }
-  // The amplitude of the half cycle completed last.
-  const Real& last_amplitude() const { return last_amplitude_; }
+  // Returns why a run ends with the half cycle completed last, if it does.
+  std::optional<StopReason> stops(const std::optional<double>& until_amplitude, const Budget& budget) const {
+    if (until_amplitude && last_amplitude_ < Real(*until_amplitude)) return StopReason::amplitude;
+    if (complete_ >= budget.max_half_cycles) return StopReason::half_cycle_budget;
+    return {};
+  }
 
  private:
   Real side_{0}, begin_{0}, amplitude_, peak_time_{0}, last_amplitude_{0};
@@ -64,8 +68,8 @@ std::optional<Real> leave_zero(const Motion& motion, const Real& duration,
   half_cycles.take_side(leads[order] > 0 ? 1 : -1);
   if (order < 3) return Real(0);
   const Real fourth = motion.derivative_of_x(1, half_cycles.side(), Real(0), search.span).whole.third;
-  const Real leap = begin_by_lead<Real>(3, leads[order], fourth, search.span);
-  return leap < duration ? leap : duration;
+  const Real begin = begin_by_lead<Real>(3, leads[order], fourth, search.span);
+  return begin < duration ? begin : duration;
 }
 
 // Finds the peaks of the half cycle under way in [from, until): where x' changes its sign. Sets

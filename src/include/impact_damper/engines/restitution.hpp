@@ -54,19 +54,19 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
     const Real away = wall == Wall::left ? 1 : -1;
     const Real speed = away * state.w;
     if (speed < 0) return false;
-    const auto lead = flight.lead_of_y();
-    const Real push = -away * lead[2];
+    const auto y = flight.derivatives_of_y();
+    const Real push = -away * y[2];
     accumulation = 0;
     if (speed == 0) return flight.sticks();
     if (!(push > 0) || e == 1) return false;
     accumulation = 2 * speed / (push * (1 - e));
-    const Real change_of_push = -away * lead[3];
+    const Real change_of_push = -away * y[3];
     // The acceleration changes in flight, and by the impacts (M6.2).
     const auto steady_for = [&](const Real& rate) {
       return (rate + 2 * zeta * push) * accumulation <= tolerance * push;
     };
-    if (!(steady_for(absolute(lead[3])) && accumulation < tracker.search().span &&
-          steady_for(absolute(lead[3]) + flight.fourth_of_y(tracker.search().span) * accumulation)))
+    if (!(steady_for(absolute(y[3])) && accumulation < tracker.search().span &&
+          steady_for(absolute(y[3]) + flight.fourth_of_y(tracker.search().span) * accumulation)))
       return false;
     // (M6.3). x' of the joined masses, and by how much x' may differ from it meanwhile.
     const Real epsilon = std::numeric_limits<Real>::epsilon(), share = nu / (1 + nu);
@@ -95,9 +95,8 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
       const auto release = stuck.release(accumulation, tracker.remaining(), tracker.search());
       if (release) state = stuck.released(*release);
       tracker.pass(stuck, release ? *release : tracker.remaining(), state, Real(0));
-      if (observer.wants_contacts() && begin <= tracker.now()) {
-        observer.contact(double(begin), tracker.stopped() ? tracker.end_time() : double(tracker.now()), wall);
-      }
+      if (observer.wants_contacts() && begin <= tracker.now())
+        observer.contact(double(begin), tracker.time(), wall);
       released = true;
       continue;
     }
@@ -117,7 +116,7 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
     on_wall = true;
   }
   tracker.finish(state, Real(0), losses);
-  return {*tracker.stopped(), tracker.end_time()};
+  return tracker.outcome();
 }
 
 }  // namespace impact_damper

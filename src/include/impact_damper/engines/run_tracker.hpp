@@ -49,20 +49,23 @@ class RunTracker {
   const Real& now() const { return clock_.now(); }
   Real remaining() const { return Real(horizon_.end_time) - clock_.now(); }
   const std::optional<StopReason>& stopped() const { return stopped_; }
-  // The time at which the run ended: exactly the time asked for if that ended it.
-  double end_time() const { return timed_out_ ? horizon_.end_time : double(clock_.now()); }
+  // The time up to which the run has been followed: exactly the time asked for if that ended it.
+  double time() const { return timed_out_ ? horizon_.end_time : double(clock_.now()); }
+  // How the run ended, once it has stopped.
+  Outcome outcome() const { return {*stopped_, time()}; }
   Search<Real>& search() { return search_; }
 
+  // Begin and end the energy balance, if it is wanted. losses: of all impacts and contacts.
   void begin(const State<Real>& start, const Real& depth) {
     if (observer_.wants_energy()) begin(energy_of(system_, start, depth));
   }
   void begin(const Energy& energy) { observer_.energy_balance().initial = energy; }
 
   // Advances the run by `duration` of a motion, less if the scene ends in it; `end` is then the state at that
-  // time. Returns the work done in it. tell_sample(t) reports the next sample, at the time t of the motion.
-  template <MotionOf<Real> Motion, class TellSample>
+  // time. Returns the work done in it. report_sample(t) reports the next sample, at the time t of the motion.
+  template <MotionOf<Real> Motion, class ReportSample>
   [[gnu::always_inline]] Work<Real> pass(const Motion& motion, Real duration, State<Real>& end,
-                                         const Real& wall_damping, TellSample&& tell_sample) {
+                                         const Real& wall_damping, ReportSample&& report_sample) {
     if (search_.exhausted()) {  // the end of the motion may not have been found
       stopped_ = StopReason::step_budget;
       duration = 0;
@@ -84,7 +87,7 @@ class RunTracker {
       }
       duration = followed;
     }
-    tell_samples(duration, tell_sample);
+    report_samples(duration, report_sample);
     const Work<Real> works =
         observer_.wants_energy() ? add_work(motion, duration, wall_damping) : Work<Real>{};
     if constexpr (requires { observer_.passed(now(), duration, end); })
@@ -138,15 +141,15 @@ class RunTracker {
   }
 
  private:
-  template <class TellSample>
-  [[gnu::always_inline]] void tell_samples(const Real& duration, TellSample&& tell_sample) {
+  template <class ReportSample>
+  [[gnu::always_inline]] void report_samples(const Real& duration, ReportSample&& report_sample) {
     // Compared in double precision, as times are recorded: a sample asked for at an event's time is reported.
     const double until = timed_out_ ? horizon_.end_time : double(clock_.after(duration));
     while (observer_.next_sample() <= until) {
       Real t = Real(observer_.next_sample()) - now();
       if (t < 0) t = 0;
       if (!(t < duration)) t = duration;
-      tell_sample(t);
+      report_sample(t);
     }
   }
   template <MotionOf<Real> Motion>
@@ -159,14 +162,9 @@ class RunTracker {
     return works;
   }
   bool ended_by_half_cycle() {
-    if (scene_.until_amplitude && half_cycles_.last_amplitude() < *scene_.until_amplitude) {
-      stop(StopReason::amplitude);
-    } else if (half_cycles_.complete() >= budget_.max_half_cycles) {
-      stop(StopReason::half_cycle_budget);
-    } else {
-      return false;
-    }
-    return true;
+    const auto reason = half_cycles_.stops(scene_.until_amplitude, budget_);
+    if (reason) stop(*reason);
+    return reason.has_value();
   }
   void stop(StopReason reason) {
     stopped_ = reason;

@@ -12,6 +12,7 @@
 
 #include "impact_damper/engines/damper_order.hpp"
 #include "impact_damper/engines/observer.hpp"
+#include "impact_damper/motion/energy.hpp"
 #include "impact_damper/motion/flight.hpp"
 
 namespace impact_damper {
@@ -43,10 +44,7 @@ struct SecondaryMasses {
     const Real wall = away[i] > 0 ? Real(0) : clearance[i];
     return {double(Real(wall + away[i] * distance)), double(Real(away[i] * speed))};
   }
-  double kinetic(std::size_t i, const Real& v) const {
-    const Real z1 = v + w(i);
-    return double(Real(nu[i] * z1 * z1 / 2));
-  }
+  double kinetic(std::size_t i, const Real& v) const { return kinetic_energy(nu[i], v, w(i)); }
 
   // Moves all masses in flight by a time t in which x departs from its straight line by dx and x' changes by
   // dv. The masses that are held are moved as well, and the caller sets them anew: to leave them out would
@@ -140,8 +138,6 @@ struct Meeting {
 template <class Real, class Force>
 class NextMeeting {
  public:
-  using Change = typename ForcedMotion<Real, Force>::Change;
-
   // Returns all masses that meet walls at the next instant (17.2), in their order. The first must do so
   // before `until`; the result is empty if none does. primary: the motion of x from now on.
   std::span<const Meeting<Real>> find(const SecondaryMasses<Real>& masses,
@@ -170,7 +166,7 @@ class NextMeeting {
     return found_;
   }
   // The state of the primary mass at t, known from the search if t is the time that it found.
-  Change primary_at(const ForcedMotion<Real, Force>& primary, const Real& t) const {
+  Displacement<Real> primary_at(const ForcedMotion<Real, Force>& primary, const Real& t) const {
     return at_earliest_ && t == earliest_ ? *at_earliest_ : primary.at(t);
   }
 
@@ -244,7 +240,7 @@ class NextMeeting {
   std::vector<Real> estimates_;
   std::vector<Meeting<Real>> found_;
   Real earliest_{0};
-  std::optional<Change> at_earliest_;
+  std::optional<Displacement<Real>> at_earliest_;
   std::optional<Bounds> bounds_;
 };
 

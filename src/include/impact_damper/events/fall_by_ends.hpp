@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "impact_damper/events/exclusion.hpp"
-#include "impact_damper/events/impact_prediction.hpp"
+#include "impact_damper/events/halley.hpp"
 #include "impact_damper/math/elementary.hpp"
 
 namespace impact_damper {
@@ -42,16 +42,11 @@ std::optional<SlopeAt<Real>> zero_between(const At& at, const SlopeAt<Real>& beg
   Real t = begin.time + s * h;
   for (int i = 0; i < 6; ++i) {
     const SeriesAt<Real> now = at(t);
-    // bend: the second-order correction, u'' times half of Newton's step divided by u'.
-    const Real over = 1 / now.u1, newton = -now.u * over, bend = newton * (now.u2 * over) / 2;
-    const bool bends_little = absolute(bend) < Real(0.0625);
-    const Real step = bends_little ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
+    const auto [step, curvature, is_small] = halley_step(Real(-now.u), Real(1 / now.u1), now.u2);
     t += step;
     if (!(begin.time < t && t < end.time)) return {};
-    // The next step would be below rounding. The step alone also vanishes at a turning point of u, where bend
-    // is large.
-    constexpr double two_to_the_18 = 262144, two_to_the_26 = 2 * two_to_the_25;
-    if (absolute(step) * rate * two_to_the_18 < 1 && absolute(bend) * two_to_the_26 < 1)
+    // The next step would be below rounding.
+    if (absolute(step) * rate * two_to_the_18 < 1 && absolute(curvature) * two_to_the_26 < 1)
       return SlopeAt<Real>{t, Real(0), now.u1 + step * now.u2};
   }
   return {};

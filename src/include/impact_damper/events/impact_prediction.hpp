@@ -8,6 +8,7 @@
 
 #include <limits>
 
+#include "impact_damper/events/halley.hpp"
 #include "impact_damper/events/search.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/math/power_series.hpp"
@@ -48,8 +49,6 @@ template <class Real>
   const Real half = t / 2, third = t * reciprocals<Real>[3];
   return {u + t * (u1 + half * (d[2] + third * d[3])), u1 + t * (d[2] + half * (d[3] + third * d[4]))};
 }
-
-inline constexpr double two_to_the_25 = 33554432;
 
 // The starting point of the prediction, from the parabola through the beginning of u. Where u' = u'' = 0
 // there the sign of u''' decides which wall is predicted.
@@ -116,13 +115,9 @@ template <class Real, std::size_t N, class Departure, class Enough, class GoOn>
     // NOLINTNEXTLINE(bugprone-branch-clone): the same where the series has no more pairs than these
     const SeriesAt<Real> at = near ? departure.at(t) : departure.template at<first_pairs>(t);
     const Real u1 = u[1] + at.u1, over = 1 / u1;
-    // bend: the second-order correction, u'' times half of Newton's step divided by u'.
-    const Real newton = (ahead - u[1] * t - at.u) * over, bend = newton * (at.u2 * over) / 2;
-    const bool bends_little = absolute(bend) < Real(0.0625);
-    const Real step = bends_little ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
+    const auto [step, curvature, is_small] = halley_step(Real(ahead - u[1] * t - at.u), over, at.u2);
     const Real size = absolute(step);
-    // Halley's step alone vanishes at a turning point of u, too, where u is not at the wall.
-    if (near && bends_little && size * two_to_the_25 < t && t < most) {
+    if (near && is_small && size * two_to_the_25 < t && t < most) {
       if (!enough(u1, t)) return {t, across, false, {}};
       // The step is below 2^-25 t. In the departure of u, ~ u'' t^2/2, the term with its second power, u''
       // step^2/2, may be above rounding. In that of u', ~ u'' t, the term u''' step^2/2 is left out: it is

@@ -26,8 +26,9 @@ struct Jet {
 template <class Real>
 struct LocalEnclosure {
   Jet<Real> whole;
-  Jet<Real> main;  // whole = main + rest
-  Real rest{0};    // bound on |rest| for the same time; infinity: no such splitting
+  Jet<Real> main{};  // whole = main + rest
+  // A bound on |rest| for the same time; infinity: no such splitting.
+  Real rest = std::numeric_limits<Real>::infinity();
 };
 
 // The cubic p(s) = g + g1 s + g2 s^2/2 - third s^3/6, which bounds the function from below.

@@ -10,7 +10,7 @@
 #include "impact_damper/events/impact_prediction.hpp"
 #include "impact_damper/motion/contact_motion.hpp"
 #include "impact_damper/motion/lead.hpp"
-#include "impact_damper/motion/proofs_by_bounds.hpp"
+#include "impact_damper/motion/motion.hpp"
 #include "impact_damper/motion/sustained_contact.hpp"
 
 namespace impact_damper {
@@ -18,6 +18,7 @@ namespace impact_damper {
 template <class Real, class Force = Forcing<Real>>
 class Contact : public ContactMotion<Real, Force>, public ProofsByBounds<Contact<Real, Force>, Real> {
   using Motion = ContactMotion<Real, Force>;
+  using Proofs = ProofsByBounds<Contact<Real, Force>, Real>;
   using Motion::forced;
   using Motion::inward_, Motion::parts_, Motion::phase_, Motion::start_, Motion::system_, Motion::wall_;
 
@@ -41,7 +42,7 @@ class Contact : public ContactMotion<Real, Force>, public ProofsByBounds<Contact
   std::optional<WallEvent<Real>> leave(const Real& horizon, Search<Real>& search) const {
     if (start_.y == wall_ && (start_.w != 0 || pressed_until() == 0)) {
       std::optional<End> end;
-      if (system_.short_contact) end = system_.short_contact(start_of_map());
+      if (system_.short_contact) end = system_.short_contact.end(start_of_map());
       if constexpr (forced)
         if (end) short_.end = end->time;
       if (end) SearchCounter<Real>::found(FoundBy::short_contact_map);
@@ -59,7 +60,7 @@ class Contact : public ContactMotion<Real, Force>, public ProofsByBounds<Contact
   auto end_of_short_contact() const {
     using Result = typename Map::EndAndChange;
     const auto end = system_.short_contact && start_.y == wall_ && (start_.w != 0 || pressed_until() == 0)
-                         ? system_.short_contact.template operator()<Result>(start_of_map())
+                         ? system_.short_contact.template end<Result>(start_of_map())
                          : std::nullopt;
     if constexpr (forced)
       if (end) short_.end = end->time;
@@ -106,8 +107,7 @@ class Contact : public ContactMotion<Real, Force>, public ProofsByBounds<Contact
     if constexpr (forced)
       if (const auto fall = fall_in_short_contact(order, sign, from, until))
         return fall->time && *fall->time < until ? fall->time : std::nullopt;
-    return isolate_fall<Real>([&](const Real& t) { return derivative_of_x(order, sign, t, search.span); },
-                              from, until, search, resolution());
+    return Proofs::falls(order, sign, from, until, search);
   }
   // Returns |x| at a turning point, x'(t) = 0. It is the height of the slow mode alone if the ringing is
   // below rounding and moves the turning point too little to change the height (docs/mathematics.md, 7.7).

@@ -4,7 +4,7 @@
 
 #include "impact_damper/motion/contact_modes.hpp"
 #include "impact_damper/motion/lead.hpp"
-#include "impact_damper/motion/proofs_by_bounds.hpp"
+#include "impact_damper/motion/motion.hpp"
 #include "impact_damper/motion/state.hpp"
 
 namespace impact_damper {
@@ -58,8 +58,8 @@ class ContactWithoutModes : public ProofsByBounds<ContactWithoutModes<Real, Forc
     const auto fall = isolate_fall<Real>(
         [&](const Real& t) {
           const Chain chain(*this, t);
-          return look(inward_ * chain.s[0][2], inward_ * chain.s[1][2], inward_ * chain.s[2][2],
-                      chain.bound_of_q(3, search.span));
+          return LocalEnclosure<Real>{{inward_ * chain.s[0][2], inward_ * chain.s[1][2],
+                                       inward_ * chain.s[2][2], chain.bound_of_q(3, search.span)}};
         },
         from, horizon, search, resolution());
     if (!fall) return {};
@@ -68,17 +68,11 @@ class ContactWithoutModes : public ProofsByBounds<ContactWithoutModes<Real, Forc
     return end;
   }
 
-  [[gnu::noinline]] std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from,
-                                              const Real& until, Search<Real>& search) const {
-    return isolate_fall<Real>([&](const Real& t) { return derivative_of_x(order, sign, t, search.span); },
-                              from, until, search, resolution());
-  }
-  Real height(const Real& t) const { return absolute(at(t).x); }
   [[gnu::noinline]] LocalEnclosure<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t,
                                                          const Real& span) const {
     const Chain chain(*this, t);
-    return look(sign * chain.s[order][0], sign * chain.s[order + 1][0], sign * chain.s[order + 2][0],
-                chain.bound_of_x(order + 3, span));
+    return {{sign * chain.s[order][0], sign * chain.s[order + 1][0], sign * chain.s[order + 2][0],
+             chain.bound_of_x(order + 3, span)}};
   }
   std::array<Real, 4> leads_of_x() const {
     const Chain chain(*this, Real(0));
@@ -131,9 +125,6 @@ class ContactWithoutModes : public ProofsByBounds<ContactWithoutModes<Real, Forc
 
   const Forcing<Real>& forcing() const { return exponential_.equations().forcing; }
   Real bound_of_x(std::size_t n, const Real& t) const { return Chain(*this, Real(0)).bound_of_x(n, t); }
-  static LocalEnclosure<Real> look(const Real& g, const Real& g1, const Real& g2, const Real& third) {
-    return {{g, g1, g2, third}, {}, std::numeric_limits<Real>::infinity()};
-  }
 
   const ContactModes<Real, Force>& system_;
   const ContactExponential<Real>& exponential_;

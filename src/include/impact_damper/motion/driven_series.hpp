@@ -53,14 +53,14 @@ class DrivenSeriesMaker {
   template <class Number>
   std::array<Number, taylor_terms> taylor(const Number& x, const Number& x1, const Number& f,
                                           const Number& f1) const {
-    // turn: the angle of the force's phase in one unit of time.
-    const Real square = unit_ * unit_, b = b_ * square, a2 = a2_ * unit_, turn = frequency_ * unit_;
+    // angle: that of the force's phase in one unit of time.
+    const Real square = unit_ * unit_, b = b_ * square, a2 = a2_ * unit_, angle = frequency_ * unit_;
     std::array<Number, taylor_terms> c{x, x1 * unit_};
     Number f_now = f * square, f_next = f1 * (square * unit_);
     for (std::size_t n = 2; n < taylor_terms; ++n) {
       const Real next = Real(double(n)), both = Real(double(n * (n - 1)));
       c[n] = (f_now - c[n - 2] * b) / both - c[n - 1] * a2 / next;
-      const Number f_after = f_now * -(turn * turn) / both;
+      const Number f_after = f_now * -(angle * angle) / both;
       f_now = f_next;
       f_next = f_after;
     }

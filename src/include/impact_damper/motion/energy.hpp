@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "impact_damper/events/search.hpp"
 #include "impact_damper/motion/state.hpp"
@@ -12,17 +13,40 @@
 
 namespace impact_damper {
 
-// Returns the energy of a state, divided by K epsilon^2. depth: of the secondary mass in a compliant wall.
-// The kinetic energy has the cross term that the paper's sum of squares drops: m is carried along with x'.
+// What a secondary mass adds to the energy: its mass ratio, y', and twice the energy of its wall.
+template <class Real>
+struct EnergyTerms {
+  Real nu, w, wall;
+};
+// Returns the energy of the primary mass with x and x' = v, and of `count` secondary masses, divided by K
+// epsilon^2. of(i): the EnergyTerms of the i-th. The kinetic energy has the cross term that the paper's sum
+// of squares drops: m is carried along with x'.
+template <class Real, class Of>
+Energy energy_of_masses(const Real& x, const Real& v, std::size_t count, Of&& of) {
+  Real kinetic = v * v, paper = kinetic, walls{0};
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto [nu, w, wall] = of(i);
+    const Real z1 = v + w;
+    kinetic += nu * z1 * z1;
+    paper += nu * (v * v + w * w);
+    walls += wall;
+  }
+  return {double(Real(kinetic / 2)), double(Real(x * x / 2)), double(Real(walls / 2)),
+          double(Real((paper + x * x) / 2))};
+}
+// Returns the kinetic energy of a secondary mass.
+template <class Real>
+double kinetic_energy(const Real& nu, const Real& v, const Real& w) {
+  const Real z1 = v + w;
+  return double(Real(nu * z1 * z1 / 2));
+}
+
+// The same for a single damper. depth: of the secondary mass in a compliant wall.
 template <class Real, class Force>
 Energy energy_of(const System<Real, Force>& system, const State<Real>& s, const Real& depth) {
-  Energy energy;
-  const Real z1 = s.v + s.w;
-  energy.kinetic = double((s.v * s.v + system.nu * z1 * z1) / 2);
-  energy.spring = double(s.x * s.x / 2);
-  energy.wall = double(system.k * depth * depth / 2);
-  energy.paper = double((s.v * s.v + system.nu * (s.v * s.v + s.w * s.w) + s.x * s.x) / 2);
-  return energy;
+  return energy_of_masses(s.x, s.v, 1, [&](std::size_t) {
+    return EnergyTerms<Real>{system.nu, s.w, system.k * depth * depth};
+  });
 }
 
 template <class Real>

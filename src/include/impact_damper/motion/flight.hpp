@@ -74,7 +74,7 @@ class Flight : public WithoutContact<Flight<Real, Force, Clearance, Primary>, Re
   // t.
   Real length() const { return primary_.length(); }
   FlightStart<Real> start_of_rest(const Real& t) const {
-    const Place now = from_wall(t);
+    const FromWall now = from_wall(t);
     return {state_of(now), wall_, away_, now.u};
   }
   bool goes_on() const { return goes_on_; }  // as a piece of a flight that began before
@@ -84,12 +84,12 @@ class Flight : public WithoutContact<Flight<Real, Force, Clearance, Primary>, Re
   }
   // Returns the same for a mass that begins at rest on a wall and leaves it.
   std::optional<WallEvent<Real>> released_meets_wall(const Real& horizon, Search<Real>& search) const {
-    const Real leap = begin_by_lead_of_y(search.span);
-    // No wall is met before `leap` (M7.4). The prediction begins there, too, because a y'' that differs from
+    const Real begin = begin_by_lead_of_y(search.span);
+    // No wall is met before `begin` (M7.4). The prediction begins there, too, because a y'' that differs from
     // zero by rounding alone may have the wrong sign. Only where y'' is exactly zero and y''' leads it begins
     // at 0: guess_by_parabola then uses y'''.
-    const bool by_jerk = lead_of_y()[2] == 0 && primary_.lead().order <= 3;
-    return met_from(by_jerk ? Real(0) : leap, leap, horizon, search);
+    const bool by_third = derivatives_of_y()[2] == 0 && primary_.lead().order <= 3;
+    return met_from(by_third ? Real(0) : begin, begin, horizon, search);
   }
   // Returns the first impact in [from, horizon) by Lemma L1, step by step.
   std::optional<WallEvent<Real>> search_wall(const Real& from, const Real& horizon,
@@ -98,7 +98,7 @@ class Flight : public WithoutContact<Flight<Real, Force, Clearance, Primary>, Re
                                       search, this->resolution());
     if (!met) return {};
     const Wall wall = met->which == 0 ? Wall::left : Wall::right;
-    const Place then = from_wall(met->time);
+    const FromWall then = from_wall(met->time);
     State<Real> state = met->time == 0 ? start_ : state_of(then);
     state.y = wall == Wall::left ? Real(0) : gap();
     return WallEvent<Real>{met->time, wall, state, then.change};
@@ -107,21 +107,20 @@ class Flight : public WithoutContact<Flight<Real, Force, Clearance, Primary>, Re
   std::optional<Real> turn_of_y(const Real& sign, const Real& from, const Real& until,
                                 Search<Real>& search) const {
     const auto enclose = [&](const Real& t) {
-      const Place now = from_wall(t);
+      const FromWall now = from_wall(t);
       const auto x = primary_.template instant<6>(now.x, now.v, t);
       return LocalEnclosure<Real>{
-          {sign * away_ * now.u1, -sign * x[2], -sign * x[3], x.bound(4, search.span)},
-          {},
-          std::numeric_limits<Real>::infinity()};
+          {sign * away_ * now.u1, -sign * x[2], -sign * x[3], x.bound(4, search.span)}};
     };
-    // A mass that begins at rest on a wall has y' = 0 there; rounding could show a second zero within `leap`.
-    const Real leap = start_.w == 0 && u_ == 0 ? begin_by_lead_of_y(search.span) : Real(0);
-    return isolate_fall<Real>(enclose, from < leap ? leap : from, until, search, this->resolution());
+    // A mass that begins at rest on a wall has y' = 0 there; rounding could show a second zero before
+    // `begin`.
+    const Real begin = start_.w == 0 && u_ == 0 ? begin_by_lead_of_y(search.span) : Real(0);
+    return isolate_fall<Real>(enclose, from < begin ? begin : from, until, search, this->resolution());
   }
   // Encloses the two functions that fall through zero at an impact: the gap to the left wall, y, and the gap
   // to the right wall, both for a time `span` from t on.
   std::array<LocalEnclosure<Real>, 2> gaps(const Real& t, const Real& span) const {
-    const Place now = from_wall(t);
+    const FromWall now = from_wall(t);
     const Real near = now.u, far = gap() - now.u, y1 = away_ * now.u1;
     const Real left = away_ > 0 ? near : far, right = away_ > 0 ? far : near;
     const auto x = primary_.template instant<5>(now.x, now.v, t);
@@ -132,7 +131,7 @@ class Flight : public WithoutContact<Flight<Real, Force, Clearance, Primary>, Re
   }
 
   // y and its first three derivatives at the beginning.
-  Derivatives<Real, 4> lead_of_y() const {
+  Derivatives<Real, 4> derivatives_of_y() const {
     const auto x = primary_.template derivatives<4>(start_.x, start_.v, Real(0), Real(1));
     return {start_.y, start_.w, -x[2], -x[3]};
   }
@@ -148,22 +147,22 @@ class Flight : public WithoutContact<Flight<Real, Force, Clearance, Primary>, Re
   Real gap() const { return clearance_.gap(); }
   // The state with the position of the secondary mass as its distance u from the wall, u' and the change of
   // x.
-  struct Place {
+  struct FromWall {
     Real x, v, u, u1;
     ChangeOfX<Real> change;  // of x
   };
-  [[gnu::always_inline]] Place from_wall(const Real& t) const {
+  [[gnu::always_inline]] FromWall from_wall(const Real& t) const {
     const Real u1 = away_ * start_.w;
     if (t == 0) return {start_.x, start_.v, u_, u1, {Real(0), Real(0)}};
     const auto now = primary_.at(t);
     return {now.x, now.v, u_ + (u1 * t - away_ * now.dx), u1 - away_ * now.dv, {now.dx, now.dv}};
   }
-  State<Real> state_of(const Place& place) const {
+  State<Real> state_of(const FromWall& place) const {
     return {place.x, place.v, wall_ + away_ * place.u, away_ * place.u1};
   }
   // u and its derivatives, which from the second on are those of -away x.
   template <std::size_t N>
-  Derivatives<Real, N> derivatives_of_u(const Place& place, const Real& t) const {
+  Derivatives<Real, N> derivatives_of_u(const FromWall& place, const Real& t) const {
     auto u = primary_.template derivatives<N>(-away_ * place.x, -away_ * place.v, t, -away_);
     u[0] = place.u;
     u[1] = place.u1;
@@ -196,12 +195,12 @@ class Flight : public WithoutContact<Flight<Real, Force, Clearance, Primary>, Re
   // For a mass that is released at rest and leaves its wall by y''', or a later derivative, alone: the time
   // (M7.4) before which it meets no wall. 0 for any other start.
   Real begin_by_lead_of_y(const Real& span) const {
-    const auto y = lead_of_y();
+    const auto y = derivatives_of_y();
     const Lead<Real> lead = primary_.lead();
-    const bool by_jerk = lead.order <= 3;
-    const std::size_t order = by_jerk ? 3 : lead.order;
-    const Real size = away_ * (by_jerk ? y[3] : Real(-lead.value));
-    if (!(size > 0) || (by_jerk && !(away_ * y[2] < size * Real(1e-6)))) return 0;
+    const bool by_third = lead.order <= 3;
+    const std::size_t order = by_third ? 3 : lead.order;
+    const Real size = away_ * (by_third ? y[3] : Real(-lead.value));
+    if (!(size > 0) || (by_third && !(away_ * y[2] < size * Real(1e-6)))) return 0;
     const Real far = begin_by_lead<Real>(order, size, primary_.beginning().bound(order + 1, span), span),
                near = 1 / square_root(Real(1 + size / gap()));
     return near < far ? near : far;
@@ -223,7 +222,7 @@ class Flight : public WithoutContact<Flight<Real, Force, Clearance, Primary>, Re
       return true;
     if (halvings == 0) return false;
     const Real half = h / 2;
-    const Place middle = from_wall(begin + half);
+    const FromWall middle = from_wall(begin + half);
     // The third derivative -1 makes no claim: stays_between() uses it only for a beginning next to a wall.
     return stays_between_walls(from, begin, {middle.u, middle.u1}, half, fourth, halvings - 1) &&
            stays_between_walls(Derivatives<Real, 4>{middle.u, middle.u1, Real(0), Real(-1)},
@@ -259,7 +258,7 @@ class Flight : public WithoutContact<Flight<Real, Force, Clearance, Primary>, Re
     const auto enough = [](const Real&, const Real&) { return true; };
     const auto go_on = enough;
     const Departure<Real, driven_pairs> departure = x.departure(-away_);
-    std::optional<Place> end;
+    std::optional<FromWall> end;
     const auto none = [&] {
       if (!end) end = from_wall(reach);
       return stays_between_walls(u, Real(0), {end->u, end->u1}, reach, fourth, 2);
@@ -288,7 +287,7 @@ class Flight : public WithoutContact<Flight<Real, Force, Clearance, Primary>, Re
   std::optional<WallEvent<Real>> predicted_wall(const Real& from, const Real& span) const {
     const Real rate = primary_.rate(), most = span * rate < 2 ? span : Real(2 / rate);
     Real begin = from;
-    Place here = from_wall(from);
+    FromWall here = from_wall(from);
     for (int piece = 0; piece < 3; ++piece) {
       const auto u = derivatives_of_u<10>(here, begin);
       const Real fourth = primary_.fourth(u, -away_ * here.x, -away_ * here.v, begin, -away_, span);
@@ -314,7 +313,7 @@ class Flight : public WithoutContact<Flight<Real, Force, Clearance, Primary>, Re
         return reached(predicted.across, h, here.x + (here.v * h - away_ * by_u), here.v - away_ * by_u1,
                        here.u1 + by_u1, {dx + (dv * h - away_ * by_u), dv - away_ * by_u1}, FoundBy::series);
       }
-      Place there;
+      FromWall there;
       for (int correction = 0;; ++correction) {
         there = from_wall(begin + h);
         const auto u_there = derivatives_of_u<6>(there, begin + h);

@@ -6,9 +6,9 @@
 #pragma once
 
 #include "impact_damper/events/exclusion.hpp"
+#include "impact_damper/events/halley.hpp"
 #include "impact_damper/events/impact_prediction.hpp"
 #include "impact_damper/events/root_isolation.hpp"
-#include "impact_damper/events/root_of_series.hpp"
 #include "impact_damper/motion/driven_series.hpp"
 #include "impact_damper/motion/lead.hpp"
 #include "impact_damper/motion/state.hpp"
@@ -40,11 +40,8 @@ class ForcedMotion {
         v0_(v0),
         cached_(*this) {}
 
-  struct Change {
-    Real x, v;    // displacement and velocity at t
-    Real dx, dv;  // x - x0 - v0 t and v - v0, without cancellation
-  };
-  Change at(const Real& t) const {
+  // The departures are computed without cancellation.
+  Displacement<Real> at(const Real& t) const {
     if (t == 0) return {x0_, v0_, Real(0), Real(0)};
     if constexpr (forced) {
       if (t <= reach()) {
@@ -53,7 +50,7 @@ class ForcedMotion {
       }
     }
     const Propagator<Real> p = oscillator_.propagate(t);
-    Change now;
+    Displacement<Real> now;
     now.x = x0_ * p.c + v0_ * p.s;
     now.dx = x0_ * p.c1 + v0_ * p.s1;
     const Real from_x = -x0_ * oscillator_.b() * p.s;
@@ -193,13 +190,13 @@ class ForcedMotion {
   }
   // Returns the last turning point of x, x' = 0, before t, the first zero of x''; nothing where it has no
   // closed form.
-  std::optional<Real> turn_before(const Real& t) const {
+  std::optional<Real> turning_point_before(const Real& t) const {
     const Real& half_period = oscillator_.half_period();
     if (forcing_ || !(half_period < std::numeric_limits<Real>::infinity()) || !(t < half_period)) return {};
-    return t - oscillator_.turn_before();
+    return t - oscillator_.peak_to_inflection();
   }
   // Returns |x'| at a zero of x'' at t, where x is -2a/b times x'; nothing where it has no closed form.
-  std::optional<Real> speed_at_turn(const Real& t) const {
+  std::optional<Real> speed_at_inflection(const Real& t) const {
     if (forcing_ || !(oscillator_.half_period() < std::numeric_limits<Real>::infinity())) return {};
     const auto x = derivatives<4>(x0_, v0_, Real(0), Real(1));
     return oscillator_.height(x[1], x[2], t);
@@ -208,11 +205,9 @@ class ForcedMotion {
   // Encloses sign times the `order`-th derivative of x for a time `span` from t on.
   LocalEnclosure<Real> enclosure_at(std::size_t order, const Real& sign, const Real& t,
                                     const Real& span) const {
-    const Change now = at(t);
+    const Displacement<Real> now = at(t);
     const auto x = instant<7>(now.x, now.v, t);
-    return {{sign * x[order], sign * x[order + 1], sign * x[order + 2], x.bound(order + 3, span)},
-            {},
-            std::numeric_limits<Real>::infinity()};
+    return {{sign * x[order], sign * x[order + 1], sign * x[order + 2], x.bound(order + 3, span)}};
   }
 
   // The largest modulus of an eigenvalue, or omega_f if that is larger.

@@ -13,7 +13,7 @@ namespace impact_damper {
 // Returns the sine and cosine of the angle of `at` increased by `by`, 0 to 1/16, to double precision: the
 // next terms of both Taylor series are below 2^-61 (docs/mathematics.md, chapter 4).
 template <class Real>
-SinCos<Real> turned(const SinCos<Real>& at, const Real& by) {
+SinCos<Real> rotated(const SinCos<Real>& at, const Real& by) {
   const Real z = by * by;
   const Real sin =
       by +
@@ -31,13 +31,13 @@ struct Forcing {
 
   // Sine and cosine of the phase at a time.
   SinCos<Real> phase(const Real& time) const { return sin_cos(frequency * time); }
-  // The same from the phase `before` that the force had a time `since` >= 0 before `time`: `before` is turned
-  // by the angle frequency since, if that is below 1/16; else the phase is computed from `time`. A phase that
-  // was turned must not be turned again: the errors would add up.
+  // The same from the phase `before` that the force had a time `since` >= 0 before `time`: `before` is
+  // rotated by the angle frequency since, if that is below 1/16; else the phase is computed from `time`. A
+  // phase that was rotated must not be rotated again: the errors would add up.
   SinCos<Real> phase(const Real& time, const SinCos<Real>& before, const Real& since) const {
     if constexpr (std::numeric_limits<Real>::digits10 < 17) {
       const Real by = frequency * since;
-      if (by < Real(0.0625)) return turned(before, by);
+      if (by < Real(0.0625)) return rotated(before, by);
     }
     return phase(time);
   }

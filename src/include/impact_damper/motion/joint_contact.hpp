@@ -14,7 +14,7 @@
 #include "impact_damper/motion/driven_series.hpp"
 #include "impact_damper/motion/energy.hpp"
 #include "impact_damper/motion/lead.hpp"
-#include "impact_damper/motion/proofs_by_bounds.hpp"
+#include "impact_damper/motion/motion.hpp"
 #include "impact_damper/motion/state.hpp"
 
 namespace impact_damper {
@@ -112,17 +112,13 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force>, Real> {
   }
 
   const Real& length() const { return length_; }
-  // x and x' at t, and their differences dx and dv from x0 + v0 t and v0.
-  struct Change {
-    Real x, v, dx, dv;
-  };
-  Change change(const Real& t) const {
+  Displacement<Real> change(const Real& t) const {
     const SeriesAt<Real> by = Departure<Real, joint_terms / 2>{x_}.at(t * over_h_);
     const Real v0 = over_h_ * get(x_, 1), dv = over_h_ * by.u1;
     return {get(x_, 0) + (v0 * t + by.u), v0 + dv, by.u, dv};
   }
   State<Real> at(const Real& t) const {
-    const Change now = change(t);
+    const Displacement<Real> now = change(t);
     return {now.x, now.v, Real(0), Real(0)};
   }
   // Returns q and q' of the i-th wall at t.
@@ -227,7 +223,6 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force>, Real> {
                             Search<Real>& search) const {
     return fall(function(x_, sign, order), from, until, search);
   }
-  Real height(const Real& t) const { return absolute(at(t).x); }
   std::array<Real, 4> leads_of_x() const {
     return {get(x_, 0), over_h_ * get(x_, 1), 2 * get(x_, 2) * over_h_ * over_h_,
             6 * get(x_, 3) * over_h_ * over_h_ * over_h_};
@@ -274,9 +269,9 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force>, Real> {
   void expand(std::array<Real, joint_terms>& x) {
     const std::size_t count = nu_.size();
     const auto& [sin, cos] = phase_;
-    // turn: the angle of the force's phase in one unit of time.
-    const Real h_2 = h_ * h_, turn = h_ * forcing_.frequency;
-    Real f_now = h_2 * (forcing_.amplitude * sin), f_next = h_2 * (forcing_.amplitude * (turn * cos));
+    // angle: that of the force's phase in one unit of time.
+    const Real h_2 = h_ * h_, angle = h_ * forcing_.frequency;
+    Real f_now = h_2 * (forcing_.amplitude * sin), f_next = h_2 * (forcing_.amplitude * (angle * cos));
     const auto& over = reciprocals<Real>;
     for (std::size_t n = 0; n + 2 < joint_terms; ++n) {
       const Real both = over[n + 1] * over[n + 2], next = Real(double(n + 1));
@@ -289,7 +284,7 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force>, Real> {
       if (!followers_.empty()) sum = (sum - pull_[n]) / mass_;
       x[n + 2] = sum * both;
       for (std::size_t i = 0; i < count; ++i) after[i] = -(sum + force_[i]) * both;
-      const Real f_after = -turn * turn * f_now * both;
+      const Real f_after = -angle * angle * f_now * both;
       f_now = f_next;
       f_next = f_after;
     }
@@ -304,8 +299,8 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force>, Real> {
       for (std::size_t n = joint_terms; n-- > 0;) {
         const Real both = Real(double((n + 1) * (n + 2)));
         pull_[n] += nu_[i] * both * second;
-        const Real bend = n + 2 < joint_terms ? Real(x[n + 2] + second) : Real(0);  // of x'' + q''
-        const Real now = -(both * bend + double(n + 1) * damping * next) / spring;
+        const Real of_z = n + 2 < joint_terms ? Real(x[n + 2] + second) : Real(0);  // z = x + q
+        const Real now = -(both * of_z + double(n + 1) * damping * next) / spring;
         second = next;
         next = q_[n * count + i] = now;
       }
@@ -356,9 +351,7 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force>, Real> {
   }
   LocalEnclosure<Real> enclosure(const Function& g, const Real& t) const {
     const SeriesAt<Real> now = sum<Real>(g.terms, t * over_h_);
-    return {{now.u, over_h_ * now.u1, over_h_ * over_h_ * now.u2, g.third},
-            {},
-            std::numeric_limits<Real>::infinity()};
+    return {{now.u, over_h_ * now.u1, over_h_ * over_h_ * now.u2, g.third}};
   }
 
   Real zeta_{0};

@@ -62,9 +62,9 @@ class JointSlowMode {
   std::array<Real, 2> overlap(std::size_t k, const Real& time, const Real& x, const Real& v) const {
     const OfWall& wall = walls_[k];
     const auto f = force_.template derivatives<3>(force_.phase(time + ahead_));
-    const Real bend = f[0] - 2 * oscillator_.a() * v - oscillator_.b() * x;  // x''
+    const Real x2 = f[0] - 2 * oscillator_.a() * v - oscillator_.b() * x;  // x''
     return {wall.on_x * x + wall.on_v * v + (wall.on_f * f[0] + wall.on_f1 * f[1]),
-            wall.on_x * v + wall.on_v * bend + (wall.on_f * f[1] + wall.on_f1 * f[2])};
+            wall.on_x * v + wall.on_v * x2 + (wall.on_f * f[1] + wall.on_f1 * f[2])};
   }
   // Whether the walls have stopped ringing: their q and q' are those of the slow mode but for rounding
   // errors.
@@ -97,9 +97,7 @@ class JointSlowMode {
     const Real& omega = force_.frequency;
     return {{derivative(0), derivative(1), derivative(2),
              absolute(wall.on_x) * x.bound(3, span) + absolute(wall.on_v) * x.bound(4, span) +
-                 wall.size_on_f * omega * omega * omega},
-            {},
-            std::numeric_limits<Real>::infinity()};
+                 wall.size_on_f * omega * omega * omega}};
   }
 
  private:

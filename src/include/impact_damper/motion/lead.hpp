@@ -25,6 +25,8 @@ template <class Real>
 struct Lead {
   std::size_t order = 0;
   Real value{0};
+  // Returns the side on which masses at rest are pressed against their walls: 1 left, -1 right, 0 neither.
+  Real side() const { return value > 0 ? Real(1) : value < 0 ? Real(-1) : Real(0); }
 };
 
 // Returns the lead of x, which obeys x'' + a2 x' + b x = f with the forces of the walls `pushed` added to f

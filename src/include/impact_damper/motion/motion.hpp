@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <optional>
 
+#include "impact_damper/events/exclusion.hpp"
+#include "impact_damper/events/root_isolation.hpp"
 #include "impact_damper/events/search.hpp"
 #include "impact_damper/motion/state.hpp"
 
@@ -35,6 +37,43 @@ concept MotionOf = requires(const T motion, const Real& t, const State<Real>& en
   // The length of a quadrature panel that begins at t, and the shortest time in which x changes.
   { motion.panel(t) } -> std::convertible_to<Real>;
   { motion.resolution() } -> std::convertible_to<Real>;
+};
+
+// Base class of a Motion without closed forms for its events: it searches for them, and proves by bounds
+// where there are none. Each proof is true if what it says is proved for all times from 0, the beginning, to
+// t, when the state is `end`, and false if it is not known. Motion has x and x' at the beginning, start_x()
+// and start_v(), and bounds on |x''| and |x'''| over [0, t], second_of_x(t) and third_of_x(t).
+template <class Motion, class Real>
+class ProofsByBounds {
+ public:
+  // x keeps the sign of `side`, 1 or -1.
+  bool keeps_side(const Real& side, const State<Real>& end, const Real& t) const {
+    const Real x = motion().start_x();
+    return side * x > 0 && side * end.x > 0 && keeps_sign(x, end.x, motion().second_of_x(t), t);
+  }
+  // x' keeps its sign, or |x| does not exceed `best`, the largest |x| so far in the half cycle.
+  bool keeps_course(const Real& best, const State<Real>& end, const Real& t) const {
+    const Real v = motion().start_v();
+    if (v * end.v > 0 && keeps_sign(v, end.v, motion().third_of_x(t), t)) return true;
+    const Real off = motion().second_of_x(t) * t * t / 8;
+    return absolute(Real(motion().start_x())) + off <= best && absolute(end.x) + off <= best;
+  }
+  // x, zero at `from`, 0 <= from <= t, has no other zero until t.
+  bool leaves_zero(const Real& from, const State<Real>& end, const Real& t) const {
+    return t < from + motion().one_turn_within(from) ||
+           absolute(end.v) > motion().second_of_x(t) * (t - from);
+  }
+  // Returns a time after `from` within which x' has at most one zero; 0, as here, if none is known.
+  Real one_turn_within(const Real&) const { return 0; }
+  std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
+                            Search<Real>& search) const {
+    const auto enclose = [&](const Real& t) { return motion().derivative_of_x(order, sign, t, search.span); };
+    return isolate_fall<Real>(enclose, from, until, search, motion().resolution());
+  }
+  Real height(const Real& t) const { return absolute(motion().at(t).x); }
+
+ private:
+  const Motion& motion() const { return static_cast<const Motion&>(*this); }
 };
 
 }  // namespace impact_damper

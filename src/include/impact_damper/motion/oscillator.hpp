@@ -47,7 +47,7 @@ class Oscillator {
     rate_ = underdamped_ ? root_b_ : Real(a + omega_);
     half_period_ = underdamped_ ? Real(half_turn<Real>() / omega_) : std::numeric_limits<Real>::infinity();
     if (!underdamped_) slow_rate_ = b / rate_;
-    if (underdamped_) turn_before_ = angle_of(omega_, a) / omega_;
+    if (underdamped_) peak_to_inflection_ = angle_of(omega_, a) / omega_;
   }
 
   const Real& a() const { return a_; }
@@ -74,7 +74,7 @@ class Oscillator {
     return first + Real(whole_above(double((from - first) / period))) * period;
   }
   // The time from a zero of u' to the next zero of u'' in a free motion; only where underdamped.
-  const Real& turn_before() const { return turn_before_; }
+  const Real& peak_to_inflection() const { return peak_to_inflection_; }
   // Returns |u| at a turning point, u' = 0, of a free motion, a time t after it began with u and u'; only
   // where underdamped.
   Real height(const Real& u, const Real& u1, const Real& t) const {
@@ -150,7 +150,7 @@ class Oscillator {
     const auto& [sin, cos] = phase;
     const Real fastest = rate_ > forcing.frequency ? rate_ : forcing.frequency;
     if (t * fastest < Real(0.5)) return respond_shortly(forcing, sin, cos, t);
-    // (M4.1): the response z to exp(i omega_f t), turned by the phase at the beginning.
+    // (M4.1): the response z to exp(i omega_f t), rotated by the phase at the beginning.
     const auto [z, z1] = response_to_rotation(forcing.frequency, t, p);
     return {forcing.amplitude * (sin * z.real() + cos * z.imag()),
             forcing.amplitude * (sin * z1.real() + cos * z1.imag())};
@@ -313,7 +313,7 @@ class Oscillator {
   Real omega_{1}, over_omega_{1};  // sqrt|b - a^2|
   Real slow_rate_{0};              // of the slower exponential, where there are two
   Real rate_{1};
-  Real root_b_{1}, over_root_b_{1}, half_period_{0}, turn_before_{0};
+  Real root_b_{1}, over_root_b_{1}, half_period_{0}, peak_to_inflection_{0};
 };
 
 // Returns u, u' and, by the equation of an oscillator without a force, the derivatives that follow.

@@ -93,16 +93,16 @@ class ShortContactMap {
     half_period_ = fast.half_period();
     if (!table.reaches(half_period_)) return;
     decay_factor_ = exponential(Real(-fast.a() * half_period_));
-    few_ = reach_of<few>(fast);
-    more_ = reach_of<more>(fast);
-    many_ = reach_of<many>(fast);
-    most_ = reach_of<most>(fast);
+    reach_5_ = reach_of<5>(fast);
+    reach_7_ = reach_of<7>(fast);
+    reach_9_ = reach_of<9>(fast);
+    reach_ = reach_of<all_pairs>(fast);
     decay_ = fast.a();
     growth_ = exponential(Real(fast.a() * half_period_));
-    latest_ = half_period_ + most_.s;
+    latest_ = half_period_ + reach_.s;
     tabulate(0, table.template columns_of_x_and_v<terms>(half_period_));
     const auto [q, centre] = table.template column_of_w<terms>(half_period_, decay_factor_);
-    for (std::size_t n = 0; n < most; ++n) {
+    for (std::size_t n = 0; n < all_pairs; ++n) {
       q_[2][n] = Both{q[2 * n], q[2 * n + 1]};
       centre_[2][n] = Both{centre[2 * n], centre[2 * n + 1]};
     }
@@ -136,22 +136,22 @@ class ShortContactMap {
     ChangeOfX<Real> change;
   };
   template <class Result = End>
-  [[gnu::always_inline]] std::optional<Result> operator()(const Start& start) const {
-    const auto q = overlap_after<few>(start);
+  [[gnu::always_inline]] std::optional<Result> end(const Start& start) const {
+    const auto q = overlap_after<5>(start);
     const Real over = 1 / q[0][1], t = -q[0][0] * over, a = t * (q[1][0] * over),
                b = t * t * (q[1][1] * over);
     Real s = t * (1 - a + (2 * a * a - b));
-    if (absolute(s) < few_.s)
-      if (const auto end = end_within<Result>(start, q, s, few_)) return end;
-    if (!(absolute(s) < most_.s)) return {};
+    if (absolute(s) < reach_5_.s)
+      if (const auto end = end_within<Result>(start, q, s, reach_5_)) return end;
+    if (!(absolute(s) < reach_.s)) return {};
     // With the fewest terms two steps bring s near enough to choose the number of terms.
     for (int i = 0; i < 2; ++i) s += step_to_zero(q, s).rest;
-    if (absolute(s) < more_.s)
-      if (const auto end = end_within<Result>(start, overlap_after<more>(start), s, more_)) return end;
-    if (absolute(s) < many_.s)
-      if (const auto end = end_within<Result>(start, overlap_after<many>(start), s, many_)) return end;
-    if (!(absolute(s) < most_.s)) return {};
-    return end_within<Result>(start, overlap_after<most>(start), s, most_);
+    if (absolute(s) < reach_7_.s)
+      if (const auto end = end_within<Result>(start, overlap_after<7>(start), s, reach_7_)) return end;
+    if (absolute(s) < reach_9_.s)
+      if (const auto end = end_within<Result>(start, overlap_after<9>(start), s, reach_9_)) return end;
+    if (!(absolute(s) < reach_.s)) return {};
+    return end_within<Result>(start, overlap_after<all_pairs>(start), s, reach_);
   }
   // Bounds on the absolute values of the derivatives of x during the contact.
   Real second_of_x(const Start& start) const { return bounds(second_and_third_of_x_, start)[0]; }
@@ -161,7 +161,7 @@ class ShortContactMap {
 
   // Whether the table's series hold at a time t < T after the touch. unit_at(i, t) is the state then of a
   // contact that begins with one unit of column i and nothing else.
-  bool tells_before(const Real& t) const { return latest_ > 0 && !(most_.s < half_period_ - t); }
+  bool holds_at(const Real& t) const { return latest_ > 0 && !(reach_.s < half_period_ - t); }
   ContactState<Real> unit_at(std::size_t i, const Real& t) const {
     const Real s = t - half_period_, v = i == 1 ? Real(1) : i == 2 ? share_ : Real(0);
     const SeriesAt<Real> q = sum<Real>(q_[i], s), centre = sum<Real>(centre_[i], s);
@@ -171,8 +171,9 @@ class ShortContactMap {
   }
 
  private:
-  static constexpr std::size_t few = 5, more = 7, many = 9, most = terms / 2;  // pairs of terms
-  using Table = std::array<PairedSeries<Real, most>, columns>;
+  // A series is summed with 5, 7, 9 or all of its pairs of terms, as |s| needs.
+  static constexpr std::size_t all_pairs = terms / 2;
+  using Table = std::array<PairedSeries<Real, all_pairs>, columns>;
   using Both = SimdPair<Real>;
   using Bounds = std::array<Both, columns>;
   template <std::size_t pairs>
@@ -188,7 +189,7 @@ class ShortContactMap {
   // Stores the columns `first` and `first` + 1 of q and of the centre.
   void tabulate(std::size_t first, const ShortContactColumn<Both, terms>& two) {
     for (const std::size_t i : {0, 1}) {
-      for (std::size_t n = 0; n < most; ++n) {
+      for (std::size_t n = 0; n < all_pairs; ++n) {
         q_[first + i][n] = Both{two.q[2 * n][i], two.q[2 * n + 1][i]};
         centre_[first + i][n] = Both{two.centre[2 * n][i], two.centre[2 * n + 1][i]};
       }
@@ -240,13 +241,13 @@ class ShortContactMap {
   }
   // The step from s to the zero of q, to second order, and q' and q'' at s.
   struct Step {
-    Real rest, bend, w, w1;  // bend: the second-order correction, rest = Newton's step (1 - bend)
+    Real rest, curvature, w, w1;  // curvature as in HalleyStep; rest = Newton's step (1 - curvature)
   };
   template <std::size_t pairs>
   static Step step_to_zero(const std::array<SimdPair<Real>, pairs>& q, const Real& s) {
     const auto [depth, w, w1] = sum<Real>(q, s);
-    const Real over = 1 / w, newton = -depth * over, bend = newton * (w1 * over) / 2;
-    return {newton * (1 - bend), bend, w, w1};
+    const Real over = 1 / w, newton = -depth * over, curvature = newton * (w1 * over) / 2;
+    return {newton * (1 - curvature), curvature, w, w1};
   }
   template <class Result, std::size_t pairs>
   std::optional<Result> end_within(const Start& start, const std::array<SimdPair<Real>, pairs>& q, Real s,
@@ -261,8 +262,8 @@ class ShortContactMap {
     }
     // All other series are summed at s and moved on by the last step.
     const Real rest = step.rest, whole = s + rest, time = half_period_ + whole;
-    // The step also vanishes where bend = 1 and q is not zero. A small bend excludes that.
-    if (!(absolute(step.bend) < Real(0.0625) && absolute(whole) < reach.s)) return {};
+    // The step also vanishes where the curvature is 1 and q is not zero. A small one excludes that.
+    if (!(absolute(step.curvature) < Real(0.0625) && absolute(whole) < reach.s)) return {};
     const Real half_w2 = 3 * q[1][1] + s * (12 * q[2][0] + 30 * s * q[2][1]);
     const Real end_w = step.w + rest * (step.w1 + rest * half_w2);
     if (!(end_w * w < 0)) return {};
@@ -301,10 +302,10 @@ class ShortContactMap {
     return sum;
   }
 
-  Real half_period_{0}, decay_factor_{0};  // T and E = exp(-a T)
-  Real decay_{0}, growth_{0};              // a and exp(a T)
-  Real unweighted_{0};                     // (b / omega^2)^2
-  Reach few_, more_, many_, most_;
+  Real half_period_{0}, decay_factor_{0};      // T and E = exp(-a T)
+  Real decay_{0}, growth_{0};                  // a and exp(a T)
+  Real unweighted_{0};                         // (b / omega^2)^2
+  Reach reach_5_, reach_7_, reach_9_, reach_;  // with 5, 7, 9 and all pairs
   Real latest_{0};
   Real share_{0}, zeta_{0};
   Table centre_{}, q_{};

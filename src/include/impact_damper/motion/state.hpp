@@ -25,6 +25,12 @@ struct ChangeOfX {
   Real dx, dv;
 };
 
+// x and x' with that.
+template <class Real>
+struct Displacement {
+  Real x, v, dx, dv;
+};
+
 // An impact on a wall, or the end of a contact.
 template <class Real>
 struct WallEvent {

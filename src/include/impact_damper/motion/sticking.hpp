@@ -33,18 +33,20 @@ class JoinedMasses : public WithoutContact<JoinedMasses<Real, Force>, Real> {
     const bool by_lead = lead.order > 3;  // x'' and x''' are rounding errors
     if (by_lead ? push_ * lead.value < 0 : push <= 0 && change_of_push < 0)
       return from < horizon ? std::optional(from) : std::nullopt;
-    const Real leap = by_lead ? begin_by_lead<Real>(lead.order - 2, lead.value,
-                                                    start.bound(lead.order + 1, search.span), search.span)
-                              : Real(0);
-    const auto released = primary_.falls(2, push_, from < leap ? leap : from, horizon, search);
-    if (released) turn_ = primary_.turn_before(*released);
+    const Real begin = by_lead ? begin_by_lead<Real>(lead.order - 2, lead.value,
+                                                     start.bound(lead.order + 1, search.span), search.span)
+                               : Real(0);
+    const auto released = primary_.falls(2, push_, from < begin ? begin : from, horizon, search);
+    if (released) turning_point_ = primary_.turning_point_before(*released);
     return released;
   }
   std::optional<Real> falls(std::size_t order, const Real& sign, const Real& from, const Real& until,
                             Search<Real>& search) const {
     // Until the release x'' has the sign of push_, so sign x' falls through zero only for sign = -push_, and
     // once at most.
-    if (order == 1 && turn_) return sign != push_ && *turn_ >= from && *turn_ < until ? turn_ : std::nullopt;
+    if (order == 1 && turning_point_)
+      return sign != push_ && *turning_point_ >= from && *turning_point_ < until ? turning_point_
+                                                                                 : std::nullopt;
     return primary_.falls(order, sign, from, until, search);
   }
 
@@ -53,7 +55,7 @@ class JoinedMasses : public WithoutContact<JoinedMasses<Real, Force>, Real> {
   Real push_;
 
  private:
-  std::optional<Real> turn_;  // turning point of x before the release, once that is known
+  std::optional<Real> turning_point_;  // of x, before the release, once that is known
 };
 
 template <class Real, class Force = Forcing<Real>>
@@ -74,7 +76,7 @@ class Stuck : public JoinedMasses<Real, Force> {
   // last bit.
   State<Real> released(const Real& t) const {
     if (t == 0) return start_;
-    const auto v = primary_.speed_at_turn(t);
+    const auto v = primary_.speed_at_inflection(t);
     return v ? State<Real>{-push_ * *v * primary_.per_speed(), push_ * *v, start_.y, Real(0)} : at(t);
   }
 

@@ -14,8 +14,8 @@
 
 #include "impact_damper/events/exclusion.hpp"
 #include "impact_damper/events/fall_by_ends.hpp"
+#include "impact_damper/events/halley.hpp"
 #include "impact_damper/events/impact_prediction.hpp"
-#include "impact_damper/events/root_of_series.hpp"
 #include "impact_damper/motion/contact_motion.hpp"
 #include "impact_damper/motion/driven_series.hpp"
 

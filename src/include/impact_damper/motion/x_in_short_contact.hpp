@@ -25,7 +25,7 @@ class XInShortContactTable {
   XInShortContactTable(const Map& map, const Oscillator<Real>& fast, const Real& nu, const Real& zeta,
                        const Real& stiffness, const Real& damping, const Real& frequency)
       : about_(reach_in_radians<Real, pairs>.s / fast.rate()), rate_(fast.rate()) {
-    if (!map.tells_before(about_)) return;
+    if (!map.holds_at(about_)) return;
     end_ = 2 * about_;
     const SinCos<Real> phase = sin_cos(Real(frequency * about_));
     const Rates rates{nu, 1 + nu, 2 * zeta, stiffness, damping, frequency};

@@ -1,14 +1,32 @@
-// A root of a power series by Halley's method. Another proof must show that it is the first (exclusion.hpp).
+// Halley's method, and a root of a power series by it. Another proof must show that it is the first
+// (exclusion.hpp).
 #pragma once
 
 #include <cstddef>
 #include <optional>
 
-#include "impact_damper/events/impact_prediction.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/math/power_series.hpp"
 
 namespace impact_damper {
+
+inline constexpr double two_to_the_18 = 262144, two_to_the_25 = 33554432, two_to_the_26 = 2 * two_to_the_25;
+
+// A step of Halley's method to the root of a function. curvature: u'' times half of Newton's step, divided by
+// u'; where it is not small the step alone may vanish at a turning point, too, where u is not zero.
+template <class Real>
+struct HalleyStep {
+  Real step, curvature;
+  bool is_small;  // the curvature
+};
+// minus_u: the function's value with the opposite sign; over_u1: 1/u'.
+template <class Real>
+[[gnu::always_inline]] inline HalleyStep<Real> halley_step(const Real& minus_u, const Real& over_u1,
+                                                           const Real& u2) {
+  const Real newton = minus_u * over_u1, curvature = newton * (u2 * over_u1) / 2;
+  const bool is_small = absolute(curvature) < Real(0.0625);
+  return {is_small ? Real(newton * (1 - curvature)) : Real(newton / (1 + curvature)), curvature, is_small};
+}
 
 // Returns a root of the series g after `from`, and the slope there. Halley's method starts at the root of the
 // parabola through `begin`, first with few terms. Returns nothing where it does not converge.
@@ -32,15 +50,11 @@ std::optional<SeriesRoot<Real>> root_of_series(const PairedSeries<Real, pairs>& 
   bool near = false;
   for (int i = 0; i < 8; ++i) {
     const SeriesAt<Real> at = near ? sum<Real>(g, Real(from + t)) : sum_of_first<Real, 5>(g, Real(from + t));
-    const Real over = 1 / at.u1, newton = -at.u * over, bend = newton * (at.u2 * over) / 2;
-    const bool bends_little = absolute(bend) < Real(0.0625);
-    const Real step = bends_little ? Real(newton * (1 - bend)) : Real(newton / (1 + bend));
+    const auto [step, curvature, is_small] = halley_step(Real(-at.u), Real(1 / at.u1), at.u2);
     t += step;
     if (!(t > 0 && t < available)) return {};
-    // Halley's method is of third order: the next step would be below rounding. The step alone also vanishes
-    // at a turning point of g; a small bend, g'' times half of Newton's step divided by g', excludes that.
-    constexpr double two_to_the_18 = 262144, two_to_the_26 = 2 * two_to_the_25;
-    if (near && absolute(step) * two_to_the_18 < t && absolute(bend) * two_to_the_26 < 1)
+    // Halley's method is of third order: the next step would be below rounding.
+    if (near && absolute(step) * two_to_the_18 < t && absolute(curvature) * two_to_the_26 < 1)
       return SeriesRoot<Real>{from + t, at.u1 + step * at.u2};
     near = near || absolute(step) * 32 < t;
   }

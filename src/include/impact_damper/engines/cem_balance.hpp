@@ -1,0 +1,127 @@
+// The energy balance of a run by the component element method. Its integrals are trapezoids over the steps:
+// CemSteps sums whole powers, this class adds the ends.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "impact_damper/engines/cem_steps.hpp"
+#include "impact_damper/motion/energy.hpp"
+#include "impact_damper/run.hpp"
+
+namespace impact_damper {
+
+template <class Real, template <class> class ForEach>
+class CemBalance {
+  using Masses = CemMasses<Real, ForEach>;
+  using State = typename Masses::State;
+
+ public:
+  // balance: where the energies are written. Null: none are wanted, and no function does anything.
+  CemBalance(Masses& masses, CemSteps<Real, ForEach>& steps, EnergyBalance* balance)
+      : masses_(masses), steps_(steps), balance_(balance), of_dampers_(masses.size()) {}
+  explicit operator bool() const { return balance_ != nullptr; }
+
+  void begin(const State& start) {
+    if (!balance_) return;
+    balance_->initial = energy(start);
+    for (std::size_t i = 0; i < masses_.size(); ++i) of_damper(i).initial_kinetic = kinetic(start, i);
+  }
+  // An impact begins a contact of the i-th mass.
+  void enter(std::size_t i) {
+    if (!balance_) return;
+    masses_[i].impact = balance_->impact_loss.size();
+    balance_->impact_loss.push_back(0);
+  }
+  // A contact ends.
+  void leave(std::size_t i) {
+    auto& m = masses_[i];
+    if (balance_) {
+      if (m.impact) balance_->impact_loss[*m.impact] = double(m.work);
+      (m.impact ? m.impact_loss : m.contact_loss) += m.work;
+      m.loss += m.work;
+    }
+    m.impact.reset();
+    m.work = 0;
+  }
+  // Takes account of the energy in a state: the largest is the measure of the residual.
+  void look_at(const State& s) { energy(s); }
+
+  // Adds the powers at `time`, in the state s, times `weight`.
+  void add_powers(const Real& weight, const Real& time, const State& s) {
+    if (!balance_) return;
+    viscous_work_ += weight * 2 * masses_.zeta * s.v * s.v;
+    forcing_work_ += weight * masses_.force_at(time) * s.v;
+    for (const std::size_t i : masses_.in_contact) {
+      auto& m = masses_[i];
+      m.work += weight * m.nu * m.c * s.w[i] * s.w[i];
+    }
+  }
+  // Adds what has been summed over steps.
+  void add_sums() {
+    if (!balance_) return;
+    const Real& h = steps_.h();
+    const auto sums = steps_.take_sums();
+    viscous_work_ += masses_.zeta * sums.vv / (2 * h);
+    forcing_work_ += sums.fv / 2;
+    for (const std::size_t i : masses_.in_contact) {
+      auto& m = masses_[i];
+      m.work += m.nu * m.c * m.sum_ww / (4 * h);
+      m.sum_ww = 0;
+    }
+  }
+  // Ends a segment at a time in its last step.
+  void close(const Real& at) {
+    if (!balance_) return;
+    add_sums();
+    add_powers((at - steps_.h()) / 2, steps_.begin(), steps_.state_at(Real(0)));
+    add_powers(at / 2, steps_.begin() + at, steps_.state_at(at));
+  }
+
+  void set_final(const State& s) {
+    balance_->final = energy(s);
+    for (std::size_t i = 0; i < masses_.size(); ++i) of_damper(i).final_kinetic = kinetic(s, i);
+  }
+  // Writes the works and losses, after the last contact has ended. of_dampers: for each damper, too.
+  void finish(bool of_dampers) {
+    if (!balance_) return;
+    balance_->viscous_work = double(viscous_work_);
+    balance_->forcing_work = double(forcing_work_);
+    const double largest = std::max(largest_energy_, std::abs(balance_->forcing_work));
+    Real contact_loss = 0, losses = 0;
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      const auto& m = masses_[i];
+      of_damper(i).impact_loss = double(m.impact_loss);
+      of_damper(i).contact_loss = double(m.contact_loss);
+      contact_loss += m.contact_loss;
+      losses += m.loss;
+    }
+    balance_->contact_loss = double(contact_loss);
+    const Real open =
+        (balance_->initial.total() + forcing_work_) - (balance_->final.total() + losses + viscous_work_);
+    balance_->residual = largest > 0 ? double(open) / largest : 0.0;
+    if (of_dampers) balance_->dampers = of_dampers_;
+  }
+
+ private:
+  DamperEnergy& of_damper(std::size_t i) { return of_dampers_[masses_[i].number]; }
+  double kinetic(const State& s, std::size_t i) const { return kinetic_energy(masses_[i].nu, s.v, s.w[i]); }
+  Energy energy(const State& s) {
+    const Energy energy = energy_of_masses(s.x, s.v, masses_.size(), [&](std::size_t i) {
+      const auto& m = masses_[i];
+      return EnergyTerms<Real>{m.nu, s.w[i], m.wall ? Real(m.k * s.q[i] * s.q[i]) : Real(0)};
+    });
+    largest_energy_ = std::max(largest_energy_, energy.total());
+    return energy;
+  }
+
+  Masses& masses_;
+  CemSteps<Real, ForEach>& steps_;
+  EnergyBalance* const balance_;
+  Real viscous_work_ = 0, forcing_work_ = 0;
+  double largest_energy_ = 0;
+  std::vector<DamperEnergy> of_dampers_;  // by number in the scene
+};
+
+}  // namespace impact_damper

@@ -1,0 +1,206 @@
+// The masses of the component element method (docs/mathematics.md, 9 and 17.5), and the equations that give
+// their accelerations. Only x couples the secondary masses. Each is in flight, in contact with a wall, or
+// stuck to one, by itself.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "impact_damper/engines/cem_scheme.hpp"
+#include "impact_damper/engines/damper_order.hpp"
+#include "impact_damper/motion/lead.hpp"
+#include "impact_damper/run.hpp"
+
+namespace impact_damper {
+
+// The container in which CemEngine keeps something for each secondary mass.
+template <class T>
+using ForOne = std::array<T, 1>;
+template <class T>
+using ForSeveral = std::vector<T>;
+
+// A secondary mass: its q is y in flight and at the left wall, y - clearance at the right one.
+template <class Real>
+struct CemMass {
+  std::int32_t number;  // in the scene
+  Real nu, k, clearance;
+  Real c, omega_2;                // of its wall, whether the mass is there or not
+  std::int64_t steps_of_contact;  // small steps in the nominal contact time
+  std::optional<Wall> wall{};     // the wall it is at, in contact or stuck
+  bool stuck = false;
+  CemMoment<Real> before{}, now{};  // q before and after the last step
+  // For a list: dq_{n+1} = dq_dq dq_n + dq_q q_n + dq_dx (dx_n - dx_{n+1}), dx_{n+1} = ... + dx_dq dq_n +
+  // dx_q q_n.
+  Real dq_dq = 1, dq_q = 0, dq_dx = 1, dx_dq = 0, dx_q = 0;
+  Real least{}, most{};  // limits of q while nothing changes
+  Real contact_begin = 0;
+  std::optional<std::size_t> impact{};  // the one that began the contact
+  Real work = 0, sum_ww = 0;  // lost at the wall in this contact; sum of (2 h w)^2 not yet added to it
+  Real impact_loss = 0, contact_loss = 0, loss = 0;  // past contacts, with and without an impact; their sum
+
+  Real origin_of_q() const { return wall == Wall::right ? clearance : Real(0); }
+  Real push() const { return wall == Wall::left ? Real(1) : Real(-1); }  // sign of the wall's push
+  Wall wall_ahead() const { return now.x > clearance / 2 ? Wall::right : Wall::left; }
+  Arc<Real> arc(const Real& h) const { return arc_of(before, now, h); }
+};
+
+// The state of all masses: x and x', and q and q' of each secondary mass.
+template <class Real, template <class> class ForEach>
+struct CemState {
+  Real x, v;
+  ForEach<Real> q, w;
+};
+
+template <class Real, template <class> class ForEach>
+struct CemMasses {
+  static constexpr bool one = std::is_same_v<ForEach<Real>, ForOne<Real>>;
+  using State = CemState<Real, ForEach>;
+
+  // All in flight.
+  CemMasses(const Scene& scene, const Cem& options)
+      : zeta(scene.damping_ratio), force{Real(scene.force_amplitude), Real(scene.force_frequency)} {
+    const auto keep = [&](std::size_t place, std::int32_t number) {
+      const SceneDamper& its = scene.dampers[number];
+      const auto wall = regime_equations<Real>(scene, its, options.calibration, Regime::contact);
+      const double steps = nominal_contact_time(its) / double(Real(*options.time_step));
+      all[place] = {number, wall.nu,      its.wall_stiffness, its.clearance,
+                    wall.c, wall.omega_2, whole_steps(steps)};
+    };
+    if constexpr (one) {
+      keep(0, 0);  // a sort of one is a sixtieth of the packed module for browsers
+    } else {
+      all.resize(scene.dampers.size());
+      std::size_t place = 0;
+      for (const std::int32_t number : damper_order(scene.dampers)) keep(place++, number);
+    }
+  }
+
+  std::size_t size() const { return all.size(); }
+  const CemMass<Real>& operator[](std::size_t i) const { return all[i]; }
+  CemMass<Real>& operator[](std::size_t i) { return all[i]; }
+  template <class Value>
+  ForEach<Real> of_each(Value&& value) const {
+    if constexpr (one) {
+      return {value(0)};
+    } else {
+      std::vector<Real> values(size());
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] = value(i);
+      return values;
+    }
+  }
+
+  // Puts a mass to a wall, in contact with it or stuck, or into flight, with the same y.
+  void set_wall(std::size_t i, std::optional<Wall> wall, bool stuck = false) {
+    CemMass<Real>& m = all[i];
+    const Real smallest = std::numeric_limits<Real>::denorm_min();
+    const Real infinity = std::numeric_limits<Real>::infinity();
+    const Real old_origin = m.origin_of_q();
+    const bool was_stuck = std::exchange(m.stuck, stuck);
+    m.wall = wall;
+    m.before.x += old_origin - m.origin_of_q();
+    m.now.x += old_origin - m.origin_of_q();
+    if (!wall || stuck) m.dq_dq = m.dq_dx = Real(!stuck), m.dq_q = m.dx_dq = m.dx_q = 0;
+    m.least = !wall || stuck ? Real(0) : wall == Wall::left ? -infinity : smallest;
+    m.most = !wall ? m.clearance : stuck ? Real(0) : wall == Wall::left ? -smallest : infinity;
+    if constexpr (one) {
+      in_contact.resize(wall && !stuck ? 1 : 0);
+    } else {
+      std::erase(in_contact, i);
+      if (wall && !stuck) in_contact.insert(std::ranges::lower_bound(in_contact, i), i);
+    }
+    if (!stuck && !was_stuck) return;
+    joined = 1;
+    least_second = -infinity;
+    most_second = infinity;
+    for (const CemMass<Real>& each : all) {
+      if (!each.stuck) continue;
+      joined += each.nu;
+      (each.wall == Wall::left ? least_second : most_second) = 0;
+    }
+  }
+
+  // Puts masses to the walls with which they are in contact at a release in the state s, with y instead of q,
+  // which becomes q; no impact begins these contacts. They are masses that overlap a wall, then those at rest
+  // at a wall and pressed to it, as y'' decides, or y''' where that is zero to rounding: by where y is a step
+  // later, y'' h^2/2 + y''' h^3/6. In the stuck regime (joins), where both are zero to rounding, the first
+  // later derivative that is not decides; else the first step does. Returns y'' and y''' of a mass at rest.
+  std::pair<Real, Real> begin_contacts(State& s, const Real& h, bool joins) {
+    const auto begin_contact = [&](std::size_t i, std::optional<Wall> wall, bool sticks = false) {
+      set_wall(i, wall, sticks);
+      s.q[i] -= all[i].origin_of_q();
+    };
+    for (std::size_t i = 0; i < size(); ++i)
+      begin_contact(i, s.q[i] < 0                  ? std::optional(Wall::left)
+                       : s.q[i] > all[i].clearance ? std::optional(Wall::right)
+                                                   : std::nullopt);
+    const Real second = -second_of_x(Real(0), s), third = s.v - force.amplitude * force.frequency;
+    const Lead<Real> lead = lead_of_x(Real(2 * zeta), Real(1), force, force.phase(Real(0)), s.x, s.v);
+    const bool by_lead = joins && lead.order > 3 && in_contact.empty();
+    const Real moves = by_lead ? Real(-lead.value) : Real(second + h / 3 * third);
+    for (std::size_t i = 0; i < size(); ++i) {
+      if (!rests(s, i)) continue;
+      if (s.q[i] == 0 && moves < 0) begin_contact(i, Wall::left, joins);
+      if (s.q[i] > 0 && moves > 0) begin_contact(i, Wall::right, joins);
+    }
+    return {second, third};
+  }
+
+  Real y(const State& s, std::size_t i) const { return all[i].origin_of_q() + s.q[i]; }
+  // Whether a mass is at rest at a wall, or moves into it.
+  bool rests(const State& s, std::size_t i) const {
+    const Real at = y(s, i);
+    return (at == 0 || at == all[i].clearance) && s.w[i] == 0;
+  }
+  bool meets_wall(const State& s, std::size_t i) const {
+    const Real at = y(s, i), &w = s.w[i];
+    return (at == 0 && w < 0) || (at == all[i].clearance && w > 0);
+  }
+  Real force_at(const Real& time) const { return value_of(force, time); }
+  Real wall_force(const State& s, std::size_t i) const {  // divided by the secondary mass
+    const CemMass<Real>& m = all[i];
+    return m.wall && !m.stuck ? m.c * s.w[i] + m.omega_2 * s.q[i] : Real(0);
+  }
+  // The sum of the primary mass and all masses at walls, divided by the primary mass.
+  Real with_walls() const {
+    Real mass = joined;
+    for (const std::size_t i : in_contact) mass += all[i].nu;
+    return mass;
+  }
+  // x'' by (M9.5) with `mass` in place of 1 + nu.
+  Real second_as_one(const Real& time, const State& s, const Real& mass) const {
+    return (force_at(time) - 2 * zeta * s.v - s.x) / mass;
+  }
+  // x'' by (M17.9), with `mass` for the primary mass and the masses joined to it.
+  Real second_of_x(const Real& time, const State& s, const Real& mass) const {
+    if (mass > 1 && in_contact.empty()) return second_as_one(time, s, mass);
+    Real sum = force_at(time);
+    for (const std::size_t i : in_contact) sum += all[i].nu * wall_force(s, i);
+    return (sum - (2 * zeta * s.v + s.x)) / mass;
+  }
+  Real second_of_x(const Real& time, const State& s) const { return second_of_x(time, s, joined); }
+  Real second_of_q(const State& s, std::size_t i, const Real& x2) const {  // x2: x''
+    return all[i].stuck ? Real(0) : Real(-wall_force(s, i) - x2);
+  }
+  // y''' of a mass in flight where x'' = 0.
+  Real third_of_y(const Real& time, const State& s) const {
+    Real third = s.v - rate_of(force, time);
+    for (const std::size_t i : in_contact)
+      third -= all[i].nu * (all[i].omega_2 * s.w[i] - all[i].c * wall_force(s, i));
+    return third;
+  }
+
+  Real zeta;
+  Forcing<Real> force;
+  ForEach<CemMass<Real>> all;  // in the order of damper_order.hpp
+  std::vector<std::size_t> in_contact;
+  Real joined = 1;                     // the primary mass and those stuck to it, divided by the first
+  Real least_second{}, most_second{};  // limits of x'' while these stay stuck
+};
+
+}  // namespace impact_damper
