@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "application/reproduction/measure_numbers.hpp"
 #include "application/reproduction/measures.hpp"
 #include "application/reproduction/printed.hpp"
 #include "application/reproduction/words.hpp"

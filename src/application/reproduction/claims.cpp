@@ -3,7 +3,6 @@
 #include <set>
 #include <stdexcept>
 
-#include "application/reproduction/measure_numbers.hpp"
 #include "application/reproduction/measures.hpp"
 #include "application/reproduction/words.hpp"
 #include "impact_damper/base/number_text.hpp"

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "application/reproduction/measures.hpp"
 #include "application/reproduction/measures_parts.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/math/elementary.hpp"
@@ -14,73 +13,63 @@ namespace {
 
 // Returns the decay of a viscous oscillator: the secondary mass stays at rest, out of reach of walls that
 // move by less than half the clearance.
-HalfCycles viscous_decay(const Runs& runs, double damping_ratio) {
+HalfCycles viscous_decay(const Asked& asked) {
   Scene scene;
-  scene.damping_ratio = damping_ratio;
+  scene.damping_ratio = asked.number("damping_ratio");
   scene.x0 = 0.4;
   scene.damper().y0 = 0.1;
   scene.until_time = 200;
-  return *runs.simulated(scene, Exact{}, Record{}).half_cycles;
+  return *asked.runs.simulated(scene, Exact{}, Record{}).half_cycles;
 }
 
-Spread viscous_loss(Runs& runs, const MeasureCall& call) {
-  const double zeta = number(call, "damping_ratio");
-  return once(spread_of(averaged_loss_factor(viscous_decay(runs, zeta), runs.analysis().loss).eta).median /
-              (2 * zeta));
+double viscous_loss(const Asked& asked) {
+  return spread_of(averaged_loss_factor(viscous_decay(asked), asked.analysis().loss).eta).median /
+         (2 * asked.number("damping_ratio"));
 }
 
-Spread viscous_loss_per_cycle(Runs& runs, const MeasureCall& call) {
-  const double zeta = number(call, "damping_ratio");
-  const std::vector<double> x = viscous_decay(runs, zeta).amplitude;
-  return once(2 * (x.at(3) - x.at(5)) / x.at(4) / (2 * zeta));
+double viscous_loss_per_cycle(const Asked& asked) {
+  const std::vector<double> x = viscous_decay(asked).amplitude;
+  return 2 * (x.at(3) - x.at(5)) / x.at(4) / (2 * asked.number("damping_ratio"));
 }
 
 // Returns the change of an energy, in percent, from the release to until_time. Nothing is lost before a wall
 // is met; throws std::invalid_argument if one is.
-Spread flight_energy(const Runs& runs, const MeasureCall& call, double (*energy)(const Energy&)) {
+template <double (*of)(const Energy&)>
+double flight_energy_drift(const Asked& asked) {
   Scene scene;
-  scene.x0 = number(call, "x0");
-  scene.until_time = number(call, "until_time");
+  scene.x0 = asked.number("x0");
+  scene.until_time = asked.number("until_time");
   Record record;
   record.energy = record.impacts = true;
-  const Run run = runs.simulated(scene, Exact{}, record);
+  const Run run = asked.runs.simulated(scene, Exact{}, record);
   if (!run.impacts->time.empty()) throw std::invalid_argument("until_time: a wall was met before it");
-  return once(100 * std::abs(energy(run.energy->final) / energy(run.energy->initial) - 1));
+  return 100 * std::abs(of(run.energy->final) / of(run.energy->initial) - 1);
 }
-Spread paper_energy_drift(Runs& runs, const MeasureCall& call) {
-  return flight_energy(runs, call, [](const Energy& energy) { return energy.paper; });
-}
-Spread energy_drift(Runs& runs, const MeasureCall& call) {
-  return flight_energy(runs, call, [](const Energy& energy) { return energy.total(); });
-}
+double paper_energy(const Energy& energy) { return energy.paper; }
+double total_energy(const Energy& energy) { return energy.total(); }
 
 // Returns how much energy, in percent, is missing halfway through a lossless impact.
-Spread impact_energy(const Runs& runs, const MeasureCall& call, bool with_wall) {
+template <bool with_wall>
+double missing_impact_energy(const Asked& asked) {
   Scene scene;
   scene.x0 = 0;
   scene.damper().y0 = 0.5;
   scene.damper().w0 = -1;
-  scene.damper().mass_ratio = number(call, "mass_ratio");
+  scene.damper().mass_ratio = asked.number("mass_ratio");
   scene.damper().restitution = 1;
   scene.until_time = 0.5 + nominal_contact_time(scene.damper()) / 2;
   Record record;
   record.energy = true;
-  const EnergyBalance balance = *runs.simulated(scene, Exact{}, record).energy;
+  const EnergyBalance balance = *asked.runs.simulated(scene, Exact{}, record).energy;
   const double kept = balance.final.kinetic + balance.final.spring + (with_wall ? balance.final.wall : 0);
-  return once(100 * (1 - kept / balance.initial.total()));
-}
-Spread impact_energy_without_wall(Runs& runs, const MeasureCall& call) {
-  return impact_energy(runs, call, false);
-}
-Spread impact_energy_with_wall(Runs& runs, const MeasureCall& call) {
-  return impact_energy(runs, call, true);
+  return 100 * (1 - kept / balance.initial.total());
 }
 
 // Simulates a forced scene with e = 0, a heavy secondary mass and compliant walls, finely sampled. The engine
 // has no stuck motion: a mass that sticks is in sustained contact and obeys the equations of contact.
-Run stuck_run(const Runs& runs, const MeasureCall& call) {
+Run stuck_run(const Asked& asked) {
   Scene scene;
-  scene.damper().mass_ratio = number(call, "mass_ratio");
+  scene.damper().mass_ratio = asked.number("mass_ratio");
   scene.damper().restitution = 0;
   scene.damper().wall_stiffness = 1e6;
   scene.x0 = 6;
@@ -90,7 +79,7 @@ Run stuck_run(const Runs& runs, const MeasureCall& call) {
   Record record;
   record.contacts = true;
   record.history = {{0, 20, 20001}};
-  return runs.simulated(scene, Exact{}, record);
+  return asked.runs.simulated(scene, Exact{}, record);
 }
 
 // Visits every sample of the contacts after the wall's own motion, which decays as exp(-sqrt(k/nu) t), has
@@ -104,8 +93,8 @@ void for_each_stuck_sample(const Run& run, Visit visit) {
 }
 
 // Returns the coefficient of the force in x'' + x/(1 + nu) = coefficient f0 sin(omega_f t) by least squares.
-Spread stuck_forcing(Runs& runs, const MeasureCall& call) {
-  const Run run = stuck_run(runs, call);
+double stuck_forcing(const Asked& asked) {
+  const Run run = stuck_run(asked);
   const History& h = *run.history;
   double products = 0, squares = 0;
   for_each_stuck_sample(run, [&](std::size_t i, std::size_t) {
@@ -114,15 +103,15 @@ Spread stuck_forcing(Runs& runs, const MeasureCall& call) {
     products += force * (acceleration + h.x[i] / (1 + run.scene.damper().mass_ratio));
     squares += force * force;
   });
-  return once(products / squares);
+  return products / squares;
 }
 
 // Returns zeta_s/zeta of the paper's (9) (M9.6, M9.7), the coefficient of 2 omega_s zeta x' in the stuck
 // motion by least squares: a mass at rest against its wall moves with it, in a sustained contact.
-Spread stuck_damping(Runs&, const MeasureCall& call) {
+double stuck_damping(const Asked& asked) {
   Scene scene;
-  scene.damper().mass_ratio = number(call, "mass_ratio");
-  scene.damping_ratio = number(call, "damping_ratio");
+  scene.damper().mass_ratio = asked.number("mass_ratio");
+  scene.damping_ratio = asked.number("damping_ratio");
   scene.damper().restitution = 0;
   scene.damper().wall_stiffness = 1e6;
   scene.x0 = -6;
@@ -140,12 +129,12 @@ Spread stuck_damping(Runs&, const MeasureCall& call) {
     products -= damper * (acceleration + omega_s * omega_s * h.x[i]);
     squares += damper * damper;
   });
-  return once(products / squares);
+  return products / squares;
 }
 
 // Returns how far the stuck mass moves from its wall, divided by how far y'' = -x'' would move it.
-Spread stuck_drift(Runs& runs, const MeasureCall& call) {
-  const Run run = stuck_run(runs, call);
+double stuck_drift(const Asked& asked) {
+  const Run run = stuck_run(asked);
   const History& h = *run.history;
   const std::vector<double>& y = h.dampers[0].y;
   double moved = 0, predicted = 0;
@@ -155,7 +144,7 @@ Spread stuck_drift(Runs& runs, const MeasureCall& call) {
     moved = std::max(moved, std::abs(y[i] - y[begin]));
     predicted = std::max(predicted, std::abs(h.x[i] - h.x[begin] - h.v[begin] * (h.time[i] - h.time[begin])));
   });
-  return once(moved / predicted);
+  return moved / predicted;
 }
 
 }  // namespace
@@ -163,30 +152,28 @@ Spread stuck_drift(Runs& runs, const MeasureCall& call) {
 std::vector<Measure> audit_measures() {
   return {
       {"viscous_loss", viscous_loss, "averaged loss factor of viscous damping alone, divided by 2 zeta",
-       numbers("damping_ratio"), scenes(0, 0)},
+       numbers("damping_ratio")},
       {"viscous_loss_per_cycle", viscous_loss_per_cycle,
-       "2 dx/x over one cycle of viscous damping alone, divided by 2 zeta", numbers("damping_ratio"),
-       scenes(0, 0)},
-      {"paper_energy_drift_percent", paper_energy_drift,
-       "change of the paper's energy in a free flight, in percent", numbers("x0", "until_time"),
-       scenes(0, 0)},
-      {"energy_drift_percent", energy_drift,
+       "2 dx/x over one cycle of viscous damping alone, divided by 2 zeta", numbers("damping_ratio")},
+      {"paper_energy_drift_percent", flight_energy_drift<paper_energy>,
+       "change of the paper's energy in a free flight, in percent", numbers("x0", "until_time")},
+      {"energy_drift_percent", flight_energy_drift<total_energy>,
        "change of kinetic plus spring energy with the cross term in it, in percent",
-       numbers("x0", "until_time"), scenes(0, 0)},
-      {"impact_energy_without_wall_percent", impact_energy_without_wall,
+       numbers("x0", "until_time")},
+      {"impact_energy_without_wall_percent", missing_impact_energy<false>,
        "energy missing halfway through a lossless impact if the wall's is left out, in percent",
-       numbers("mass_ratio"), scenes(0, 0)},
-      {"impact_energy_with_wall_percent", impact_energy_with_wall,
-       "energy missing there with the wall's counted, in percent", numbers("mass_ratio"), scenes(0, 0)},
+       numbers("mass_ratio")},
+      {"impact_energy_with_wall_percent", missing_impact_energy<true>,
+       "energy missing there with the wall's counted, in percent", numbers("mass_ratio")},
       {"stuck_forcing", stuck_forcing,
        "coefficient of the force in the stuck motion, x'' + x/(1 + nu) = coefficient f0 sin(omega_f t)",
-       numbers("mass_ratio"), scenes(0, 0)},
+       numbers("mass_ratio")},
       {"stuck_damping", stuck_damping,
        "zeta_s by zeta in the stuck motion, x'' + 2 omega_s zeta_s x' + omega_s^2 x = 0",
-       numbers("mass_ratio", "damping_ratio"), scenes(0, 0)},
+       numbers("mass_ratio", "damping_ratio")},
       {"stuck_drift", stuck_drift,
        "how far a stuck mass leaves its wall, divided by how far y'' = -x'' would carry it",
-       numbers("mass_ratio"), scenes(0, 0)},
+       numbers("mass_ratio")},
   };
 }
 
