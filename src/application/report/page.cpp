@@ -20,26 +20,23 @@ struct Section {
 std::string caption_of(const std::string& name, bool several) {
   if (name == "response" && several)
     return "The largest amplitude under the same force over its frequency. Triangles: with the dampers, "
-           "pointing "
-           "up where the frequency has risen to there, down where it has fallen; open: a motion that is not "
-           "periodic, or not steady yet. Dashed: the secondary masses locked to their boxes, and the boxes "
-           "empty. Upright: the frequency given.";
+           "pointing up where the frequency has risen to there, down where it has fallen; open: a motion "
+           "that is not periodic, or not steady yet. Dashed: the secondary masses locked to their boxes, and "
+           "the boxes empty. Upright: the frequency given.";
   if (name == "decay")
     return "Each half cycle's peak amplitude. Pale: the least and greatest of all releases, where they part.";
   if (name == "loss" && several)
     return "The loss factor over the amplitude; a decay runs from right to left. Pale: all releases. Marks: "
-           "where "
-           "by the closed form for a light mass the impacts of a damper fail.";
+           "where by the closed form for a light mass the impacts of a damper fail.";
   if (name == "loss")
-    return "The loss factor over the amplitude; a decay runs from right to left. "
-           "Pale: all releases. Thin: closed forms for a light mass, with the primary system's own damping "
-           "put on. Dashed: where the closed form ends and impacts fail.";
+    return "The loss factor over the amplitude; a decay runs from right to left. Pale: all releases. Thin: "
+           "closed forms for a light mass, with the primary system's own damping put on. Dashed: where the "
+           "closed form ends and impacts fail.";
   if (name == "response")
     return "The largest amplitude under the same force over its frequency. Triangles: with the damper, "
-           "pointing "
-           "up where the frequency has risen to there, down where it has fallen; open: a motion that is not "
-           "periodic, or not steady yet. Dashed: the secondary mass locked to its box, and the box empty. "
-           "Upright: the frequency given.";
+           "pointing up where the frequency has risen to there, down where it has fallen; open: a motion "
+           "that is not periodic, or not steady yet. Dashed: the secondary mass locked to its box, and the "
+           "box empty. Upright: the frequency given.";
   if (name == "phase")
     return "Each dot is an impact: when in its half cycle, counted in degrees from one zero crossing to the "
            "next, over the half cycle's amplitude. Grey: stuck to a wall. Green: so many impacts in each "

@@ -105,8 +105,7 @@ std::string theory_sentences(const Findings& findings) {
   if (e == 1)
     return "With <i>e</i> = 1 impacts lose no energy, they only hand it to the secondary mass and back.";
   if (e == 0)
-    return "With <i>e</i> = 0 there is no rebound, and the closed forms for other restitutions do not "
-           "hold.";
+    return "With <i>e</i> = 0 there is no rebound, and the closed forms for other restitutions do not hold.";
   const double eta = peak_loss(e) * scene.damper().mass_ratio + 2 * scene.damping_ratio;
   std::string text =
       "For a light mass that strikes once in each half cycle there is a closed form: impacts damp best at an "
@@ -215,8 +214,7 @@ std::string loss_html(const Findings& findings) {
   if (findings.loss.eta.empty())
     return paragraph_html(
         "The loss factor is read off three successive peaks or more, each of a whole half cycle before "
-        "impacts "
-        "fail, and this run is too short for that: let it go further, by a later or a lower stop.");
+        "impacts fail, and this run is too short for that: let it go further, by a later or a lower stop.");
   return paragraph_html(
       !findings.several() && scene.damper().restitution == 1
           ? "With <i>e</i> = 1 and without viscous damping nothing is ever lost: there is no loss factor."
@@ -290,8 +288,7 @@ std::string loads_html(const Findings& findings) {
                                                          : "the mass does not rebound");
     text =
         "Force and duration depend on the stiffness of the walls <i>k</i>, the force as √<i>k</i>, the "
-        "duration as "
-        "1/√<i>k</i>; the speed and the number of impacts hardly do. ";
+        "duration as 1/√<i>k</i>; the speed and the number of impacts hardly do. ";
     text += "Here <i>k</i> = " + number_html(scene.damper().wall_stiffness) + " times the primary stiffness" +
             (scales ? ", " + number_html(scene.damper().wall_stiffness * scales->stiffness) + " N/m" : "");
     text +=
@@ -305,8 +302,7 @@ std::string loads_html(const Findings& findings) {
   } else if (has_rigid_walls(findings.subject.engine)) {
     text =
         "The walls of this engine are rigid and impacts take no time: the force and the duration of a "
-        "contact "
-        "follow from the stiffness of the walls, with the engine <code>exact</code>. ";
+        "contact follow from the stiffness of the walls, with the engine <code>exact</code>. ";
   } else {
     text =
         "The walls are so soft that a contact lasts a good part of a period: there is no closed form for its "

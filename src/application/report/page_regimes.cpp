@@ -152,8 +152,8 @@ std::string dampers_html(const Findings& findings) {
   }
   std::string text =
       "<i>Damps best at</i> and <i>fails at</i> are amplitudes by the closed form for a light mass that "
-      "strikes once in each half cycle; a damper that fails strikes only now and then, and loses little. "
-      "The energy is that part of all that was lost which its impacts took.";
+      "strikes once in each half cycle; a damper that fails strikes only now and then, and loses little. The "
+      "energy is that part of all that was lost which its impacts took.";
   if (free) text += " <i>Failed at</i> is where its impacts began to fail in this run.";
   if (const auto& stuck = findings.dampers[findings.shown].sticking_ends; free && stuck)
     text += " The bounces of damper " + std::to_string(findings.shown + 1) +

@@ -149,8 +149,7 @@ std::string largest_sentence(const Findings& findings) {
   if (motion.earlier_amplitude)
     text =
         "At its worst frequency the motion does not repeat. It was followed twice as long: its largest "
-        "amplitude "
-        "is first " +
+        "amplitude is first " +
         quantities.length(*motion.earlier_amplitude) + ", then " + quantities.length(motion.amplitude()) +
         ". ";
   if (motion.changes()) text += "The largest amplitude is not steady yet: do not rely on that number. ";

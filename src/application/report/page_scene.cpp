@@ -113,10 +113,8 @@ struct Method {
   std::string operator()(const Exact&) const {
     if (several)
       return "The walls are springs with dampers, and each stretch of the motion is a closed form or, where "
-             "several "
-             "walls are pushed at once, a power series that is as good: there is no time step, and no impact "
-             "is "
-             "missed.";
+             "several walls are pushed at once, a power series that is as good: there is no time step, and "
+             "no impact is missed.";
     return "The walls are springs with dampers, and each stretch of the motion is a closed form: there is no "
            "time step, and no impact is missed.";
   }
@@ -196,19 +194,13 @@ std::string scene_html(const Findings& findings) {
           ? "<p>Numbers are given in units first and, in brackets, dimensionless: lengths in units of the "
             "clearance ε" +
                 std::string(findings.several() ? " of the first damper" : "") +
-                ", times in periods 2π/Ω of the primary mass on its spring, velocities in units of "
-                "εΩ, "
+                ", times in periods 2π/Ω of the primary mass on its spring, velocities in units of εΩ, "
                 "energies in units of Kε².</p>\n"
           : "<p>Lengths are in units of " +
                 std::string(findings.several() ? "one length ε" : "the clearance ε of the secondary mass") +
-                ", times <i>t</i> in units of "
-                "1/Ω, Ω "
-                "= √(K/M) "
-                "being the primary mass's natural frequency, velocities in units of εΩ, energies in units of "
-                "Kε². A "
-                "scene file may give masses in kilograms and lengths in millimetres instead; this page then "
-                "gives "
-                "both.</p>\n";
+                ", times <i>t</i> in units of 1/Ω, Ω = √(K/M) being the primary mass's natural frequency, "
+                "velocities in units of εΩ, energies in units of Kε². A scene file may give masses in "
+                "kilograms and lengths in millimetres instead; this page then gives both.</p>\n";
   return scene_table(findings.subject) + (findings.several() ? dampers_table(findings.subject) : "") +
          scales + engine_sentence(findings);
 }

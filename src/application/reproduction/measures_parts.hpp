@@ -76,8 +76,7 @@ inline const Impacts& impacts_of(const Run& run) {
 std::vector<Measure> loss_measures();    // loss factor curves
 std::vector<Measure> damper_measures();  // several dampers
 std::vector<Measure> regime_measures();  // bounce-down, windows, impact failure, phases
-std::vector<Measure> model_measures();   // engine against engine, wall and time step
-std::vector<Measure> audit_measures();   // the paper's slips
+std::vector<Measure> model_measures();   // engine against engine, wall and time step, the paper's slips
 std::vector<Measure> steady_measures();  // steady motions under a force
 
 }  // namespace impact_damper
