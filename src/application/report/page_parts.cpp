@@ -1,9 +1,8 @@
-#include "application/report/page_parts.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "application/report/page.hpp"
 #include "application/report/quantities.hpp"
 #include "impact_damper/analysis/design.hpp"
 #include "impact_damper/analysis/theory.hpp"
@@ -59,8 +58,7 @@ std::string falls_table(const Findings& findings) {
   const Quantities quantities(findings.subject.scales);
   HtmlTable table{
       .caption = "When the amplitude first was below a part of the first one, counted from the first peak",
-      .heads = {"Below", "that is", "within"},
-      .rows = {}};
+      .heads = {"Below", "that is", "within"}};
   if (!findings.others.empty()) table.heads.emplace_back("of all releases");
   const auto since = [&](double time) { return quantities.time(time - findings.first_peak); };
   for (const Fall& fall : findings.falls) {
@@ -141,8 +139,7 @@ std::string clearance_html(const Findings& findings) {
       " smaller than thought, all at once. This scene's clearance is right for " +
       quantities.length(rule.amplitude) + ".";
   HtmlTable table{.caption = "The amplitude, in units of the clearance, beside the one at which impacts fail",
-                  .heads = {"Clearance", "amplitude", "impacts fail at", "margin"},
-                  .rows = {}};
+                  .heads = {"Clearance", "amplitude", "impacts fail at", "margin"}};
   const bool light = peak_loss(scene.damper().restitution) * scene.damper().mass_ratio < far_too_much;
   if (light) table.heads.emplace_back("η of the impacts");
   const auto row = [&](const std::string& what, double amplitude, double fold, double loss) {
@@ -229,8 +226,7 @@ std::string energy_html(const Findings& findings) {
   HtmlTable table{.caption = findings.several()
                                  ? "The energy of all masses, from the beginning to the end of the run"
                                  : "The energy of both masses, from the beginning to the end of the run",
-                  .heads = {"What"},
-                  .rows = {}};
+                  .heads = {"What"}};
   if (scales) table.heads.emplace_back("J");
   table.heads.insert(table.heads.end(), {"in units of Kε²", "share"});
   const auto row = [&](const std::string& what, double energy) {
@@ -269,8 +265,7 @@ std::string loads_html(const Findings& findings) {
   const auto& scales = findings.subject.scales;
   HtmlTable table{.caption = findings.several() ? "Loads of the boxes and of the secondary masses in this run"
                                                 : "Loads of the box and of the secondary mass in this run",
-                  .heads = {"What", "how much"},
-                  .rows = {}};
+                  .heads = {"What", "how much"}};
   const auto row = [&](const std::string& what, const std::string& value) {
     table.rows.push_back({what, value});
   };
