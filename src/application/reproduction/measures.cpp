@@ -27,11 +27,7 @@ void multiply(Run& run, double factor) {
 }
 
 // Returns a record of all that measures use.
-Record measured() {
-  Record record;
-  record.impacts = record.contacts = true;
-  return record;
-}
+Record measured() { return {.impacts = true, .contacts = true}; }
 
 constexpr NumberRange above_up_to(double least, double most) { return {least, most, false}; }
 constexpr NumberRange amplitudes = above_up_to(0, 1e12);

@@ -78,20 +78,17 @@ Scene single_impact_scene(double mass_ratio, double restitution) {
 
 double wall_restitution(const Asked& asked) {
   const Scene scene = single_impact_scene(asked.number("mass_ratio"), asked.number("restitution"));
-  Record record;
-  record.contacts = true;
-  const Run contact = asked.runs.simulated(scene, Exact{}, record);
+  const Run contact = asked.runs.simulated(scene, Exact{}, {.contacts = true});
   if (contact.contacts->end.empty()) return std::nan("");
   const double end = contact.contacts->end.front();
-  record.history = {{end, end + 1e-9, 2}};
-  return asked.runs.simulated(scene, Exact{}, record).history->dampers[0].w.back();
+  const Run again =
+      asked.runs.simulated(scene, Exact{}, {.contacts = true, .history = {{end, end + 1e-9, 2}}});
+  return again.history->dampers[0].w.back();
 }
 
 double contact_frequency(const Asked& asked) {
   const Scene scene = single_impact_scene(asked.number("mass_ratio"), asked.number("restitution"));
-  Record record;
-  record.contacts = true;
-  const Contacts contacts = *asked.runs.simulated(scene, Exact{}, record).contacts;
+  const Contacts contacts = *asked.runs.simulated(scene, Exact{}, {.contacts = true}).contacts;
   if (contacts.end.empty()) return std::nan("");
   const double duration = contacts.end.front() - contacts.begin.front();
   return half_turn<double>() / duration / std::sqrt(scene.damper().wall_stiffness);
@@ -107,9 +104,7 @@ double wall_overlap(const Asked& asked, const Run& run) {
   Scene scene = run.scene;
   scene.until_amplitude.reset();
   scene.until_time = begin + nominal_contact_time(scene.damper());
-  Record record;
-  record.history = {{begin, *scene.until_time, 201}};
-  const Run again = asked.runs.simulated(scene, run.engine, record);
+  const Run again = asked.runs.simulated(scene, run.engine, {.history = {{begin, *scene.until_time, 201}}});
   double overlap = 0;
   for (const double y : again.history->dampers[0].y) overlap = std::max({overlap, -y, y - 1});
   return overlap;
@@ -234,9 +229,7 @@ double flight_energy_drift(const Asked& asked) {
   Scene scene;
   scene.x0 = asked.number("x0");
   scene.until_time = asked.number("until_time");
-  Record record;
-  record.energy = record.impacts = true;
-  const Run run = asked.runs.simulated(scene, Exact{}, record);
+  const Run run = asked.runs.simulated(scene, Exact{}, {.impacts = true, .energy = true});
   if (!run.impacts->time.empty()) throw std::invalid_argument("until_time: a wall was met before it");
   return 100 * std::abs(of(run.energy->final) / of(run.energy->initial) - 1);
 }
@@ -248,9 +241,7 @@ template <bool with_wall>
 double missing_impact_energy(const Asked& asked) {
   Scene scene = single_impact_scene(asked.number("mass_ratio"), 1);
   scene.until_time = 0.5 + nominal_contact_time(scene.damper()) / 2;
-  Record record;
-  record.energy = true;
-  const EnergyBalance balance = *asked.runs.simulated(scene, Exact{}, record).energy;
+  const EnergyBalance balance = *asked.runs.simulated(scene, Exact{}, {.energy = true}).energy;
   const double kept = balance.final.kinetic + balance.final.spring + (with_wall ? balance.final.wall : 0);
   return 100 * (1 - kept / balance.initial.total());
 }
@@ -266,10 +257,7 @@ Run stuck_run(const Asked& asked) {
   scene.force_amplitude = 2;
   scene.force_frequency = 0.4;
   scene.until_time = 20;
-  Record record;
-  record.contacts = true;
-  record.history = {{0, 20, 20001}};
-  return asked.runs.simulated(scene, Exact{}, record);
+  return asked.runs.simulated(scene, Exact{}, {.contacts = true, .history = {{0, 20, 20001}}});
 }
 
 // Visits every sample of the contacts after the wall's own motion, which decays as exp(-sqrt(k/nu) t), has
@@ -282,22 +270,33 @@ void for_each_stuck_sample(const Run& run, Visit visit) {
       if (time[i - 1] > run.contacts->begin[c] + 0.2 && time[i + 1] < run.contacts->end[c]) visit(i, c);
 }
 
-// Returns the coefficient of the force in x'' + x/(1 + nu) = coefficient f0 sin(omega_f t) by least squares.
-double stuck_forcing(const Asked& asked) {
-  const Run run = stuck_run(asked);
+// Returns the coefficient in x'' + restoring = coefficient driving of the stuck motion, by least squares;
+// both terms are functions of a sample.
+template <class Restoring, class Driving>
+double stuck_coefficient(const Run& run, Restoring restoring, Driving driving) {
   const History& h = *run.history;
   double products = 0, squares = 0;
   for_each_stuck_sample(run, [&](std::size_t i, std::size_t) {
     const double acceleration = (h.v[i + 1] - h.v[i - 1]) / (h.time[i + 1] - h.time[i - 1]);
-    const double force = run.scene.force_amplitude * sin_cos(run.scene.force_frequency * h.time[i]).sin;
-    products += force * (acceleration + h.x[i] / (1 + run.scene.damper().mass_ratio));
-    squares += force * force;
+    products += driving(i) * (acceleration + restoring(i));
+    squares += driving(i) * driving(i);
   });
   return products / squares;
 }
 
-// Returns zeta_s/zeta of the paper's (9) (M9.6, M9.7), the coefficient of 2 omega_s zeta x' in the stuck
-// motion by least squares: a mass at rest against its wall moves with it, in a sustained contact.
+// Returns the coefficient of the force in x'' + x/(1 + nu) = coefficient f0 sin(omega_f t).
+double stuck_forcing(const Asked& asked) {
+  const Run run = stuck_run(asked);
+  const History& h = *run.history;
+  return stuck_coefficient(
+      run, [&](std::size_t i) { return h.x[i] / (1 + run.scene.damper().mass_ratio); },
+      [&](std::size_t i) {
+        return run.scene.force_amplitude * sin_cos(run.scene.force_frequency * h.time[i]).sin;
+      });
+}
+
+// Returns zeta_s/zeta of the paper's (9) (M9.6, M9.7), minus the coefficient of 2 omega_s zeta x' in the stuck
+// motion: a mass at rest against its wall moves with it, in a sustained contact.
 double stuck_damping(const Asked& asked) {
   Scene scene;
   scene.damper().mass_ratio = asked.number("mass_ratio");
@@ -306,20 +305,12 @@ double stuck_damping(const Asked& asked) {
   scene.damper().wall_stiffness = 1e6;
   scene.x0 = -6;
   scene.until_time = 1;
-  Record record;
-  record.contacts = true;
-  record.history = {{0, 1, 1001}};
-  const Run run = simulate(scene, Exact{}, record);
+  const Run run = simulate(scene, Exact{}, {.contacts = true, .history = {{0, 1, 1001}}});
   const History& h = *run.history;
   const double omega_s = 1 / std::sqrt(1 + scene.damper().mass_ratio);
-  double products = 0, squares = 0;
-  for_each_stuck_sample(run, [&](std::size_t i, std::size_t) {
-    const double acceleration = (h.v[i + 1] - h.v[i - 1]) / (h.time[i + 1] - h.time[i - 1]);
-    const double damper = 2 * scene.damping_ratio * omega_s * h.v[i];
-    products -= damper * (acceleration + omega_s * omega_s * h.x[i]);
-    squares += damper * damper;
-  });
-  return products / squares;
+  return -stuck_coefficient(
+      run, [&](std::size_t i) { return omega_s * omega_s * h.x[i]; },
+      [&](std::size_t i) { return 2 * scene.damping_ratio * omega_s * h.v[i]; });
 }
 
 // Returns how far the stuck mass moves from its wall, divided by how far y'' = -x'' would move it.

@@ -307,9 +307,7 @@ Runs Power::changed(const PowerNumber& number, double value) const {
   Scene scene = run.scene;
   const std::vector<Changeable> numbers = changeable(scene);
   by_name(numbers, number.name).set(scene, value);
-  Record record;
-  record.impacts = record.contacts = true;
-  runs.put(number.of, simulate(scene, run.engine, record));
+  runs.put(number.of, simulate(scene, run.engine, {.impacts = true, .contacts = true}));
   return runs;
 }
 
