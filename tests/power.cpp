@@ -36,7 +36,7 @@ const Power& power() {
   static const Power power = [] {
     PowerInput input;
     const Catalogue catalogue = read_catalogue(source / "figures/catalogue.json");
-    input.claims = claims_on_scenes_of(catalogue, read_claims(source / "data/claims.json"));
+    input.claims = claims_on_scenes_of(catalogue, read_claims(source / "data/claims.json").claims);
     input.further = catalogue.runs;
     input.asked = catalogue.responses;
     Record record;
@@ -84,7 +84,7 @@ TEST_CASE("the smallest change is found between the first that turns a verdict a
 TEST_CASE("the recorded table has every number of every scene, of the analysis and of what runs record") {
   const nlohmann::json& rows = recorded()["numbers"];
   CHECK(recorded()["claims"] == claims_on_scenes_of(read_catalogue(source / "figures/catalogue.json"),
-                                                    read_claims(source / "data/claims.json"))
+                                                    read_claims(source / "data/claims.json").claims)
                                     .size());
   CHECK(recorded()["members"] == EnsembleOptions{}.members);
   CHECK(recorded()["engine"] == "exact");

@@ -300,7 +300,7 @@ int verify(Arguments& arguments) {
   reject_same_output(arguments, "--markdown", markdown_file, "--output", verdicts_file);
   arguments.finish();
 
-  const ClaimsFile read = read_claims_file(claims_file);
+  const ClaimsFile read = read_claims(claims_file);
   const std::vector<Claim>& claims = read.claims;
   // Without a catalogue there are no further runs.
   const bool has_catalogue = arguments.given("--catalogue") || fs::exists(catalogue_file);

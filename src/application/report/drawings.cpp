@@ -16,19 +16,14 @@ namespace {
 
 constexpr std::size_t least_points = 3, most_rows_drawn = 4000;
 
-bool is_there(const Table& table, std::string_view block) {
-  return std::ranges::find(table.blocks, block, &TableBlock::name) != table.blocks.end();
-}
-
 // Leaves out rows that no picture distinguishes, but which make it large.
 void thin(Drawing& drawing) {
   std::size_t longest = 0;
-  for (const TableBlock& block : drawing.table.blocks)
-    longest = std::max(longest, block.columns[0].values.size());
+  for (const TableBlock& block : drawing.table.blocks) longest = std::max(longest, block.rows());
   const std::size_t every = drawing.every = (longest + most_rows_drawn - 1) / most_rows_drawn;
   if (every <= 1) return;
   for (TableBlock& block : drawing.table.blocks) {
-    if (block.columns[0].values.size() <= most_rows_drawn) continue;
+    if (block.rows() <= most_rows_drawn) continue;
     block.notes.push_back("one row of " + std::to_string(every));
     for (std::size_t& row : block.gaps) row = (row + every - 1) / every;
     block.gaps.erase(std::unique(block.gaps.begin(), block.gaps.end()), block.gaps.end());
@@ -65,7 +60,7 @@ Drawing drawing_of(const Findings& findings, const std::string& name, const std:
   if (!std::holds_alternative<Exact>(subject.engine))
     parameters += "; " + std::string(name_of(subject.engine)) + " engine";
   if (const auto& scales = subject.scales) {
-    drawing.table.blocks.push_back(
+    drawing.table.add(
         {.name = "scales",
          .columns = {{"time", "1/Omega_n in s", {scales->of(Dimension::time)}},
                      {"length", "unit of length in mm", {scales->length * unit}},
@@ -73,7 +68,7 @@ Drawing drawing_of(const Findings& findings, const std::string& name, const std:
   }
   // For several dampers lengths are not divided by a clearance.
   if (findings.several() && !of_one)
-    drawing.table.blocks.push_back(
+    drawing.table.add(
         {.name = "dampers", .columns = {{"dampers", "how many", {double(subject.scene.dampers.size())}}}});
   return drawing;
 }
@@ -87,65 +82,42 @@ std::optional<Drawing> decay(const Findings& findings) {
   if (rows.amplitude.size() < least_points) return std::nullopt;
   Drawing drawing =
       drawing_of(findings, "decay", findings.forced() ? "Amplitude over time" : "Decay of the amplitude");
-  drawing.table.blocks.push_back(
+  drawing.table.add(
       {.name = "curve",
        .columns = {{"time", "time of the peak, in units of 1/Omega_n", rows.peak_time},
                    {"peak amplitude", "of the half cycle, in units of epsilon", rows.amplitude}}});
   if (findings.others.empty()) return drawing;
   TableBlock band{
       .name = "band",
-      .columns = {{"time", "time of the peak, in units of 1/Omega_n", {}},
-                  {"least", "amplitude of the ensemble, in units of epsilon", {}},
-                  {std::to_string(findings.others.size() + 1) + " releases", "greatest amplitude", {}}}};
+      .columns = {{"time", "time of the peak, in units of 1/Omega_n"},
+                  {"least", "amplitude of the ensemble, in units of epsilon"},
+                  {std::to_string(findings.others.size() + 1) + " releases", "greatest amplitude"}}};
   for (std::size_t row = 0; row < findings.spread.size(); ++row) {
     double least = rows.amplitude[row], greatest = least;
     for (const Run& other : findings.others) {
       least = std::min(least, other.half_cycles->amplitude[row]);
       greatest = std::max(greatest, other.half_cycles->amplitude[row]);
     }
-    band.columns[0].values.push_back(rows.peak_time[row]);
-    band.columns[1].values.push_back(least);
-    band.columns[2].values.push_back(greatest);
+    band.add_row({rows.peak_time[row], least, greatest});
   }
-  if (!findings.spread.empty()) drawing.table.blocks.push_back(std::move(band));
+  drawing.table.add_if_any(std::move(band));
   return drawing;
 }
 
 // Returns the least and greatest loss factor of all releases over amplitudes that all of them have.
 TableBlock loss_band(const Findings& findings) {
-  TableBlock block{
-      .name = "band-1",
-      .columns = {{"amplitude", "peak amplitude A, in units of epsilon", {}},
-                  {"least", "eta of the ensemble", {}},
-                  {std::to_string(findings.others.size() + 1) + " releases", "greatest eta", {}}}};
+  TableBlock block{.name = "band-1",
+                   .columns = {{"amplitude", "peak amplitude A, in units of epsilon"},
+                               {"least", "eta of the ensemble"},
+                               {std::to_string(findings.others.size() + 1) + " releases", "greatest eta"}}};
   if (findings.losses_of_others.empty()) return block;
-  std::vector<const LossFactor*> members{&findings.loss};
-  for (const LossFactor& each : findings.losses_of_others) members.push_back(&each);
+  std::vector<BandCurve> members{{findings.loss.amplitude, findings.loss.eta}};
+  for (const LossFactor& each : findings.losses_of_others) members.push_back({each.amplitude, each.eta});
   constexpr int last = 240;
   const auto [from, to] = std::ranges::minmax(findings.loss.amplitude);
-  const double range = logarithm(to / from);
-  for (int k = 0; k <= last; ++k) {
-    const double amplitude = from * exponential(range * k / last);
-    std::optional<double> least, greatest;
-    for (const LossFactor* member : members) {
-      // Interpolates between the first row below the amplitude and the one before it.
-      const auto below = std::ranges::find_if(member->amplitude, [&](double a) { return a < amplitude; });
-      const auto i = static_cast<std::size_t>(below - member->amplitude.begin());
-      if (i == 0 || i == member->amplitude.size()) {
-        least.reset();
-        break;
-      }
-      const double part =
-          (member->amplitude[i - 1] - amplitude) / (member->amplitude[i - 1] - member->amplitude[i]);
-      const double eta = member->eta[i - 1] + part * (member->eta[i] - member->eta[i - 1]);
-      least = std::min(least.value_or(eta), eta);
-      greatest = std::max(greatest.value_or(eta), eta);
-    }
-    if (!least) continue;
-    block.columns[0].values.push_back(amplitude);
-    block.columns[1].values.push_back(*least);
-    block.columns[2].values.push_back(*greatest);
-  }
+  std::vector<double> amplitudes;
+  for (int k = 0; k <= last; ++k) amplitudes.push_back(from * exponential(logarithm(to / from) * k / last));
+  add_band_rows(members, amplitudes, block);
   return block;
 }
 
@@ -161,24 +133,21 @@ std::vector<double> drawn_frequencies(const ForcedResponse& response) {
   return frequencies;
 }
 
-// Returns the motions of one way that are periodic, or those that are not; absent if there are none.
-std::optional<TableBlock> arrived_block(const ForcedResponse& response, ArrivedMotion ResponsePoint::*way,
-                                        bool is_periodic, const std::string& name,
-                                        const std::string& legend) {
+// Returns the motions of one way that are periodic, or those that are not.
+TableBlock arrived_block(const ForcedResponse& response, ArrivedMotion ResponsePoint::*way, bool is_periodic,
+                         const std::string& name, const std::string& legend) {
   TableBlock block{
       .name = name,
-      .columns = {{"frequency", "of the force, in units of Omega_n", {}},
+      .columns = {{"frequency", "of the force, in units of Omega_n"},
                   {legend,
                    is_periodic ? "largest |x| of the periodic motion, in units of epsilon"
                                : "largest |x| of a motion that is not periodic, in units of epsilon",
                    {}}}};
   for (const ResponsePoint& point : response.points) {
     const ArrivedMotion& motion = point.*way;
-    if (!motion.is_known() || motion.is_periodic() != is_periodic) continue;
-    block.columns[0].values.push_back(point.frequency);
-    block.columns[1].values.push_back(motion.amplitude());
+    if (motion.is_known() && motion.is_periodic() == is_periodic)
+      block.add_row({point.frequency, motion.amplitude()});
   }
-  if (block.columns[0].values.empty()) return std::nullopt;
   return block;
 }
 
@@ -190,28 +159,25 @@ std::optional<Drawing> response(const Findings& findings) {
   const auto add = [&](ArrivedMotion ResponsePoint::*way, const std::string& name,
                        const std::string& legend) {
     for (const bool is_periodic : {true, false})
-      if (auto block = arrived_block(all, way, is_periodic, is_periodic ? name : name + "-open",
-                                     is_periodic ? legend : legend + ", not periodic"))
-        drawing.table.blocks.push_back(std::move(*block));
+      drawing.table.add_if_any(arrived_block(all, way, is_periodic, is_periodic ? name : name + "-open",
+                                             is_periodic ? legend : legend + ", not periodic"));
   };
   add(&ResponsePoint::rising, "rising", "frequency rising");
   add(&ResponsePoint::falling, "falling", "frequency falling");
   const auto linear = [&](const std::string& name, const std::string& legend, double mass) {
     TableBlock block{.name = name,
-                     .columns = {{"frequency", "of the force, in units of Omega_n", {}},
-                                 {legend, "amplitude, in units of epsilon", {}}}};
+                     .columns = {{"frequency", "of the force, in units of Omega_n"},
+                                 {legend, "amplitude, in units of epsilon"}}};
     for (const double frequency : drawn_frequencies(all)) {
       const double amplitude = linear_response(scene.force_amplitude, mass, scene.damping_ratio, frequency);
-      if (!std::isfinite(amplitude)) continue;
-      block.columns[0].values.push_back(frequency);
-      block.columns[1].values.push_back(amplitude);
+      if (std::isfinite(amplitude)) block.add_row({frequency, amplitude});
     }
-    drawing.table.blocks.push_back(std::move(block));
+    drawing.table.add(std::move(block));
   };
   linear("locked", findings.several() ? "secondary masses locked" : "secondary mass locked",
          1 + secondary_mass(scene));
   linear("empty", findings.several() ? "boxes empty" : "box empty", 1);
-  drawing.table.blocks.push_back(
+  drawing.table.add(
       {.name = "given",
        .columns = {{"frequency", "that the scene gives, in units of Omega_n", {scene.force_frequency}},
                    {"frequency given", "the largest amplitude drawn", {all.largest()->motion.amplitude()}}}});
@@ -227,28 +193,25 @@ std::optional<Drawing> loss(const Findings& findings) {
   figure.table = TableKind::loss_factor;
   figure.ordinate = LossOrdinate::eta;
   const auto block = [&](const std::string& block_name, const std::string& legend, const LossFactor& loss) {
-    drawing.table.blocks.push_back(
-        {.name = block_name,
-         .columns = {{"amplitude", "peak amplitude A, in units of epsilon", loss.amplitude},
-                     {legend, "eta = -2 d ln A/dt, per radian", loss.eta}}});
+    drawing.table.add({.name = block_name,
+                       .columns = {{"amplitude", "peak amplitude A, in units of epsilon", loss.amplitude},
+                                   {legend, "eta = -2 d ln A/dt, per radian", loss.eta}}});
   };
   block("curve-1", "simulated", findings.loss);
   if (!findings.loss_after_failure.eta.empty())
     block("failed-1", "after impact failure", findings.loss_after_failure);
-  if (TableBlock band = loss_band(findings); !band.columns[0].values.empty())
-    drawing.table.blocks.push_back(std::move(band));
+  drawing.table.add_if_any(loss_band(findings));
   if (findings.several()) {
-    TableBlock folds{
-        .name = "folds",
-        .columns = {{"amplitude", "below it impacts of a damper fail, in units of epsilon", {}}}};
+    TableBlock folds{.name = "folds",
+                     .columns = {{"amplitude", "below it impacts of a damper fail, in units of epsilon"}}};
     for (const SceneDamper& each : findings.subject.scene.dampers)
       if (each.restitution > 0 && each.restitution < 1)
-        folds.columns[0].values.push_back(fold_amplitude(each.restitution) * each.clearance);
-    if (!folds.columns[0].values.empty()) drawing.table.blocks.push_back(std::move(folds));
+        folds.add_row({fold_amplitude(each.restitution) * each.clearance});
+    drawing.table.add_if_any(std::move(folds));
     return drawing;
   }
   if (const double e = findings.subject.scene.damper().restitution; e > 0 && e < 1)
-    drawing.table.blocks.push_back(
+    drawing.table.add(
         {.name = "fold",
          .columns = {
              {"amplitude",
@@ -272,7 +235,7 @@ std::optional<Drawing> phase(const Findings& findings) {
   Drawing drawing =
       drawing_of(findings, "phase", "Phase of the impacts", one_of_several(findings, findings.shown));
   add_phase_parts(findings.run_of(findings.shown), drawing.table);
-  if (!is_there(drawing.table, "impacts")) return std::nullopt;
+  if (!drawing.table.has("impacts")) return std::nullopt;
   return drawing;
 }
 
@@ -289,16 +252,15 @@ std::optional<Drawing> prediction(const Findings& findings) {
   if (findings.others.empty() || findings.spread.size() < least_points) return std::nullopt;
   Drawing drawing = drawing_of(findings, "prediction", "How far releases part");
   TableBlock curve{.name = "curve",
-                   .columns = {{"time", "time of the peak, in units of 1/Omega_n", {}},
-                               {"spread", "of the releases' amplitudes, percent of their median", {}}}};
+                   .columns = {{"time", "time of the peak, in units of 1/Omega_n"},
+                               {"spread", "of the releases' amplitudes, percent of their median"}}};
   for (std::size_t row = 0; row < findings.spread.size(); ++row) {
     // Zero, with amplitudes equal to the last bit, has no place on a logarithmic axis.
-    if (!(findings.spread[row] > 0)) continue;
-    curve.columns[0].values.push_back(findings.run.half_cycles->peak_time[row]);
-    curve.columns[1].values.push_back(100 * findings.spread[row]);
+    if (findings.spread[row] > 0)
+      curve.add_row({findings.run.half_cycles->peak_time[row], 100 * findings.spread[row]});
   }
-  if (curve.columns[0].values.size() < least_points) return std::nullopt;
-  drawing.table.blocks.push_back(std::move(curve));
+  if (curve.rows() < least_points) return std::nullopt;
+  drawing.table.add(std::move(curve));
   return drawing;
 }
 

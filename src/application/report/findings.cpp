@@ -174,11 +174,8 @@ std::vector<HistoryWindow> windows_of(const Findings& findings) {
   return windows;
 }
 
-Run with_history(const Run& run, const std::vector<HistoryWindow>& windows) {
-  Record record;
-  record.impacts = record.contacts = record.energy = true;
-  record.history = windows;
-  return simulate(run.scene, run.engine, record);
+Run simulated(const Scene& scene, const Engine& engine, const std::vector<HistoryWindow>& windows = {}) {
+  return simulate(scene, engine, {.impacts = true, .contacts = true, .energy = true, .history = windows});
 }
 
 void simulate_others(Findings& findings, const EnsembleOptions& options, const Progress& progress) {
@@ -206,9 +203,7 @@ Findings examine(const Subject& subject, const EnsembleOptions& ensemble, const 
   Findings findings;
   findings.subject = subject;
   progress("simulating the scene");
-  Record record;
-  record.impacts = record.contacts = record.energy = true;
-  findings.run = simulate(subject.scene, subject.engine, record);
+  findings.run = simulated(subject.scene, subject.engine);
   simulate_others(findings, ensemble, progress);
 
   const HalfCycles& rows = *findings.run.half_cycles;
@@ -244,7 +239,7 @@ Findings examine(const Subject& subject, const EnsembleOptions& ensemble, const 
   progress("recording the motion");
   const std::vector<HistoryWindow> windows = windows_of(findings);
   if (windows.empty()) return findings;
-  findings.run = with_history(findings.run, windows);
+  findings.run = simulated(findings.run.scene, findings.run.engine, windows);
   const std::vector<double>& time = findings.run.history->time;
   const std::size_t second = std::min(time.size(), static_cast<std::size_t>(windows[0].count));
   if (second > 1) findings.begin = {0, second - 1};

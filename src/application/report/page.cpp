@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "application/report/page_parts.hpp"
 #include "application/report/quantities.hpp"
 #include "impact_damper/io/provenance.hpp"
 #include "impact_damper/io/scene_file.hpp"
@@ -17,29 +16,22 @@ struct Section {
   std::vector<std::string> drawings;  // names; they follow the text
 };
 
-std::string caption_of(const std::string& name, bool several) {
-  if (name == "response" && several)
-    return "The largest amplitude under the same force over its frequency. Triangles: with the dampers, "
-           "pointing "
-           "up where the frequency has risen to there, down where it has fallen; open: a motion that is not "
-           "periodic, or not steady yet. Dashed: the secondary masses locked to their boxes, and the boxes "
-           "empty. Upright: the frequency given.";
+std::string caption_of(const std::string& name, const Findings& findings) {
+  if (name == "response")
+    return "The largest amplitude under the same force over its frequency. Triangles: with " +
+           damper_of(findings) +
+           ", pointing up where the frequency has risen to there, down where it has fallen; open: a motion "
+           "that is not periodic, or not steady yet. Dashed: " +
+           masses_of(findings) + " locked to " + boxes_of(findings) + ", and the " +
+           (findings.several() ? "boxes" : "box") + " empty. Upright: the frequency given.";
   if (name == "decay")
     return "Each half cycle's peak amplitude. Pale: the least and greatest of all releases, where they part.";
-  if (name == "loss" && several)
-    return "The loss factor over the amplitude; a decay runs from right to left. Pale: all releases. Marks: "
-           "where "
-           "by the closed form for a light mass the impacts of a damper fail.";
   if (name == "loss")
-    return "The loss factor over the amplitude; a decay runs from right to left. "
-           "Pale: all releases. Thin: closed forms for a light mass, with the primary system's own damping "
-           "put on. Dashed: where the closed form ends and impacts fail.";
-  if (name == "response")
-    return "The largest amplitude under the same force over its frequency. Triangles: with the damper, "
-           "pointing "
-           "up where the frequency has risen to there, down where it has fallen; open: a motion that is not "
-           "periodic, or not steady yet. Dashed: the secondary mass locked to its box, and the box empty. "
-           "Upright: the frequency given.";
+    return std::string("The loss factor over the amplitude; a decay runs from right to left. Pale: all ") +
+           (findings.several()
+                ? "releases. Marks: where by the closed form for a light mass the impacts of a damper fail."
+                : "releases. Thin: closed forms for a light mass, with the primary system's own damping put "
+                  "on. Dashed: where the closed form ends and impacts fail.");
   if (name == "phase")
     return "Each dot is an impact: when in its half cycle, counted in degrees from one zero crossing to the "
            "next, over the half cycle's amplitude. Grey: stuck to a wall. Green: so many impacts in each "
@@ -57,8 +49,8 @@ std::string inline_svg(const std::string& svg, const std::string& title, const s
   return R"(<svg role="img" aria-label=")" + escaped(title + ". " + caption) + '"' + svg.substr(begin + 4);
 }
 
-std::string figure_html(const Drawing& drawing, const std::string& svg, bool several) {
-  std::string caption = caption_of(drawing.name, several);
+std::string figure_html(const Drawing& drawing, const std::string& svg, const Findings& findings) {
+  std::string caption = caption_of(drawing.name, findings);
   if (drawing.every > 1) caption += " One of every " + std::to_string(drawing.every) + " is drawn.";
   return R"(<figure class="plot" id="figure-)" + drawing.name + "\"><div class=\"drawing\">\n" +
          inline_svg(svg, drawing.title, caption) + "</div><figcaption>" + drawing.title + ". " + caption +
@@ -66,13 +58,13 @@ std::string figure_html(const Drawing& drawing, const std::string& svg, bool sev
 }
 
 std::string section_html(const Section& section, const std::vector<Drawing>& drawings,
-                         const std::map<std::string, std::string>& svgs, bool several) {
+                         const std::map<std::string, std::string>& svgs, const Findings& findings) {
   std::string html = "<section id=\"" + section.id + "\">\n<h2>" + section.title + "</h2>\n" + section.html;
   if (svgs.empty()) return html + "</section>\n";
   bool drawn = section.drawings.empty();
   for (const Drawing& drawing : drawings) {
     if (std::ranges::find(section.drawings, drawing.name) == section.drawings.end()) continue;
-    html += figure_html(drawing, svgs.at(drawing.name), several);
+    html += figure_html(drawing, svgs.at(drawing.name), findings);
     drawn = true;
   }
   if (!drawn) html += "<p>There is no picture of it.</p>\n";
@@ -139,7 +131,7 @@ std::string page_html(const Findings& findings, const std::vector<Drawing>& draw
   for (Section section : sections) {
     // Without a loss factor the text has said why.
     if (section.id == "loss" && svgs.contains("loss")) section.drawings = {"loss"};
-    body += section_html(section, drawings, svgs, findings.several());
+    body += section_html(section, drawings, svgs, findings);
   }
   body += "</main>";
 

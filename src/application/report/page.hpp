@@ -20,4 +20,23 @@ std::string page_html(const Findings& findings, const std::vector<Drawing>& draw
                       const std::map<std::string, std::string>& svgs, std::string_view frame,
                       const std::map<std::string, std::string_view>& parts);
 
+// Return its sections as HTML, each from the findings: page_*.cpp.
+std::string summary_html(const Findings& findings);   // a few sentences about everything
+std::string warnings_html(const Findings& findings);  // about the scene; may be empty
+std::string scene_html(const Findings& findings);
+std::string decay_html(const Findings& findings);         // of a forced motion: its amplitudes
+std::string loss_html(const Findings& findings);          // of a free motion
+std::string response_html(const Findings& findings);      // of a forced one
+std::string response_in_short(const Findings& findings);  // a few sentences; none if no motion is known
+std::string loads_html(const Findings& findings);
+std::string regimes_html(const Findings& findings);
+std::string dampers_html(const Findings& findings);  // of several, in place of the regimes
+std::string motion_html(const Findings& findings);
+std::string energy_html(const Findings& findings);
+std::string prediction_html(const Findings& findings);
+// Return "the dampers" or "the damper" and so on, by how many the scene has.
+std::string damper_of(const Findings& findings);
+std::string masses_of(const Findings& findings);
+std::string boxes_of(const Findings& findings);  // "their boxes"
+
 }  // namespace impact_damper

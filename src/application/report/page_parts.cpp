@@ -1,9 +1,8 @@
-#include "application/report/page_parts.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "application/report/page.hpp"
 #include "application/report/quantities.hpp"
 #include "impact_damper/analysis/design.hpp"
 #include "impact_damper/analysis/theory.hpp"
@@ -59,8 +58,7 @@ std::string falls_table(const Findings& findings) {
   const Quantities quantities(findings.subject.scales);
   HtmlTable table{
       .caption = "When the amplitude first was below a part of the first one, counted from the first peak",
-      .heads = {"Below", "that is", "within"},
-      .rows = {}};
+      .heads = {"Below", "that is", "within"}};
   if (!findings.others.empty()) table.heads.emplace_back("of all releases");
   const auto since = [&](double time) { return quantities.time(time - findings.first_peak); };
   for (const Fall& fall : findings.falls) {
@@ -105,8 +103,7 @@ std::string theory_sentences(const Findings& findings) {
   if (e == 1)
     return "With <i>e</i> = 1 impacts lose no energy, they only hand it to the secondary mass and back.";
   if (e == 0)
-    return "With <i>e</i> = 0 there is no rebound, and the closed forms for other restitutions do not "
-           "hold.";
+    return "With <i>e</i> = 0 there is no rebound, and the closed forms for other restitutions do not hold.";
   const double eta = peak_loss(e) * scene.damper().mass_ratio + 2 * scene.damping_ratio;
   std::string text =
       "For a light mass that strikes once in each half cycle there is a closed form: impacts damp best at an "
@@ -142,8 +139,7 @@ std::string clearance_html(const Findings& findings) {
       " smaller than thought, all at once. This scene's clearance is right for " +
       quantities.length(rule.amplitude) + ".";
   HtmlTable table{.caption = "The amplitude, in units of the clearance, beside the one at which impacts fail",
-                  .heads = {"Clearance", "amplitude", "impacts fail at", "margin"},
-                  .rows = {}};
+                  .heads = {"Clearance", "amplitude", "impacts fail at", "margin"}};
   const bool light = peak_loss(scene.damper().restitution) * scene.damper().mass_ratio < far_too_much;
   if (light) table.heads.emplace_back("η of the impacts");
   const auto row = [&](const std::string& what, double amplitude, double fold, double loss) {
@@ -215,8 +211,7 @@ std::string loss_html(const Findings& findings) {
   if (findings.loss.eta.empty())
     return paragraph_html(
         "The loss factor is read off three successive peaks or more, each of a whole half cycle before "
-        "impacts "
-        "fail, and this run is too short for that: let it go further, by a later or a lower stop.");
+        "impacts fail, and this run is too short for that: let it go further, by a later or a lower stop.");
   return paragraph_html(
       !findings.several() && scene.damper().restitution == 1
           ? "With <i>e</i> = 1 and without viscous damping nothing is ever lost: there is no loss factor."
@@ -231,8 +226,7 @@ std::string energy_html(const Findings& findings) {
   HtmlTable table{.caption = findings.several()
                                  ? "The energy of all masses, from the beginning to the end of the run"
                                  : "The energy of both masses, from the beginning to the end of the run",
-                  .heads = {"What"},
-                  .rows = {}};
+                  .heads = {"What"}};
   if (scales) table.heads.emplace_back("J");
   table.heads.insert(table.heads.end(), {"in units of Kε²", "share"});
   const auto row = [&](const std::string& what, double energy) {
@@ -271,8 +265,7 @@ std::string loads_html(const Findings& findings) {
   const auto& scales = findings.subject.scales;
   HtmlTable table{.caption = findings.several() ? "Loads of the boxes and of the secondary masses in this run"
                                                 : "Loads of the box and of the secondary mass in this run",
-                  .heads = {"What", "how much"},
-                  .rows = {}};
+                  .heads = {"What", "how much"}};
   const auto row = [&](const std::string& what, const std::string& value) {
     table.rows.push_back({what, value});
   };
@@ -290,8 +283,7 @@ std::string loads_html(const Findings& findings) {
                                                          : "the mass does not rebound");
     text =
         "Force and duration depend on the stiffness of the walls <i>k</i>, the force as √<i>k</i>, the "
-        "duration as "
-        "1/√<i>k</i>; the speed and the number of impacts hardly do. ";
+        "duration as 1/√<i>k</i>; the speed and the number of impacts hardly do. ";
     text += "Here <i>k</i> = " + number_html(scene.damper().wall_stiffness) + " times the primary stiffness" +
             (scales ? ", " + number_html(scene.damper().wall_stiffness * scales->stiffness) + " N/m" : "");
     text +=
@@ -305,8 +297,7 @@ std::string loads_html(const Findings& findings) {
   } else if (has_rigid_walls(findings.subject.engine)) {
     text =
         "The walls of this engine are rigid and impacts take no time: the force and the duration of a "
-        "contact "
-        "follow from the stiffness of the walls, with the engine <code>exact</code>. ";
+        "contact follow from the stiffness of the walls, with the engine <code>exact</code>. ";
   } else {
     text =
         "The walls are so soft that a contact lasts a good part of a period: there is no closed form for its "

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "application/report/page_parts.hpp"
+#include "application/report/page.hpp"
 #include "application/report/quantities.hpp"
 #include "impact_damper/analysis/theory.hpp"
 
@@ -22,8 +22,7 @@ std::string impacts_counted(const Findings& findings) {
 std::string regime_table(const Findings& findings) {
   const Quantities quantities(findings.subject.scales);
   HtmlTable table{.caption = "Regimes found, by the amplitudes between which each lasts",
-                  .heads = {"Regime", "from", "to", "half cycles"},
-                  .rows = {}};
+                  .heads = {"Regime", "from", "to", "half cycles"}};
   if (findings.sticking_ends && !findings.forced()) {
     const auto& [row, amplitude] = *findings.sticking_ends;
     table.rows.push_back({"bounces that end stuck to a wall", quantities.length(*findings.first_amplitude),
@@ -124,8 +123,7 @@ std::string dampers_html(const Findings& findings) {
   const Scene& scene = findings.subject.scene;
   const double lost = findings.energy_to_impacts() + findings.run.energy->viscous_work;
   HtmlTable table{.caption = "What each damper did, in the order of the scene file",
-                  .heads = {"Damper", "clearance", "damps best at", "fails at"},
-                  .rows = {}};
+                  .heads = {"Damper", "clearance", "damps best at", "fails at"}};
   const bool rigid = has_rigid_walls(findings.subject.engine), free = !findings.forced();
   if (free) table.heads.emplace_back("failed at");
   for (const char* each : {"energy taken", "impacts", "largest speed"}) table.heads.emplace_back(each);
@@ -152,8 +150,8 @@ std::string dampers_html(const Findings& findings) {
   }
   std::string text =
       "<i>Damps best at</i> and <i>fails at</i> are amplitudes by the closed form for a light mass that "
-      "strikes once in each half cycle; a damper that fails strikes only now and then, and loses little. "
-      "The energy is that part of all that was lost which its impacts took.";
+      "strikes once in each half cycle; a damper that fails strikes only now and then, and loses little. The "
+      "energy is that part of all that was lost which its impacts took.";
   if (free) text += " <i>Failed at</i> is where its impacts began to fail in this run.";
   if (const auto& stuck = findings.dampers[findings.shown].sticking_ends; free && stuck)
     text += " The bounces of damper " + std::to_string(findings.shown + 1) +

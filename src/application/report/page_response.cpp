@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "application/report/page_parts.hpp"
+#include "application/report/page.hpp"
 #include "application/report/quantities.hpp"
 #include "impact_damper/analysis/design.hpp"
 
@@ -14,12 +14,6 @@ namespace {
 std::string amplitude_or_none(const Quantities& quantities, double amplitude) {
   return std::isfinite(amplitude) ? quantities.length(amplitude) : "without bound";
 }
-
-std::string damper_of(const Findings& findings) { return findings.several() ? "the dampers" : "the damper"; }
-std::string masses_of(const Findings& findings) {
-  return findings.several() ? "the secondary masses" : "the secondary mass";
-}
-std::string boxes_of(const Findings& findings) { return findings.several() ? "their boxes" : "its box"; }
 
 bool is_given_up(const ArrivedMotion& motion) { return !motion.is_known(); }
 bool is_open(const ArrivedMotion& motion) { return motion.is_known() && !motion.is_periodic(); }
@@ -149,8 +143,7 @@ std::string largest_sentence(const Findings& findings) {
   if (motion.earlier_amplitude)
     text =
         "At its worst frequency the motion does not repeat. It was followed twice as long: its largest "
-        "amplitude "
-        "is first " +
+        "amplitude is first " +
         quantities.length(*motion.earlier_amplitude) + ", then " + quantities.length(motion.amplitude()) +
         ". ";
   if (motion.changes()) text += "The largest amplitude is not steady yet: do not rely on that number. ";
@@ -158,6 +151,12 @@ std::string largest_sentence(const Findings& findings) {
 }
 
 }  // namespace
+
+std::string damper_of(const Findings& findings) { return findings.several() ? "the dampers" : "the damper"; }
+std::string masses_of(const Findings& findings) {
+  return findings.several() ? "the secondary masses" : "the secondary mass";
+}
+std::string boxes_of(const Findings& findings) { return findings.several() ? "their boxes" : "its box"; }
 
 std::string response_in_short(const Findings& findings) {
   const ForcedResponse& response = findings.response;
@@ -201,8 +200,7 @@ std::string response_html(const Findings& findings) {
   const double force = scene.force_amplitude, zeta = scene.damping_ratio, given = scene.force_frequency;
   HtmlTable table{
       .caption = "Largest amplitude under the same force, at the worst frequency and at the one given",
-      .heads = {"", "at its worst frequency", "that is at", "at " + quantities.frequency(given)},
-      .rows = {}};
+      .heads = {"", "at its worst frequency", "that is at", "at " + quantities.frequency(given)}};
   const auto damped = [&](const std::string& what, ArrivedMotion ResponsePoint::*way) {
     const auto worst = response.largest(way);
     table.rows.push_back({what, worst ? amplitude_cell(quantities, worst->motion) : "given up",

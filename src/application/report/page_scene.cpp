@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "application/report/page_parts.hpp"
+#include "application/report/page.hpp"
 #include "application/report/quantities.hpp"
 #include "impact_damper/analysis/cautions.hpp"
 #include "impact_damper/io/scene_file.hpp"
@@ -93,8 +93,7 @@ std::string dampers_table(const Subject& subject) {
                               {"velocity at first", "y′", &SceneDamper::w0, velocity}};
   if (has_rigid_walls(subject.engine)) columns.erase(columns.begin() + 3);
   const bool in_units = subject.scales.has_value();
-  HtmlTable table{
-      .caption = in_units ? "Its dampers" : "Its dampers, dimensionless", .heads = {"Damper"}, .rows = {}};
+  HtmlTable table{.caption = in_units ? "Its dampers" : "Its dampers, dimensionless", .heads = {"Damper"}};
   for (const Column& each : columns) {
     const std::string unit(in_units ? unit_of(each.dimension, true) : "");
     table.heads.push_back(each.what + ", " + (unit.empty() ? "<i>" + each.symbol + "</i>" : unit));
@@ -113,10 +112,8 @@ struct Method {
   std::string operator()(const Exact&) const {
     if (several)
       return "The walls are springs with dampers, and each stretch of the motion is a closed form or, where "
-             "several "
-             "walls are pushed at once, a power series that is as good: there is no time step, and no impact "
-             "is "
-             "missed.";
+             "several walls are pushed at once, a power series that is as good: there is no time step, and "
+             "no impact is missed.";
     return "The walls are springs with dampers, and each stretch of the motion is a closed form: there is no "
            "time step, and no impact is missed.";
   }
@@ -130,31 +127,31 @@ struct Method {
   }
 };
 
-std::string engine_sentence(const Findings& findings) {
-  const Quantities quantities(findings.subject.scales);
-  std::string text = "<p>" + std::visit(Method{findings.several()}, findings.run.engine);
-  text += " It was followed for " + quantities.time(findings.run.end_time) + ", ";
-  switch (findings.run.stop_reason) {
+std::string end_in_words(StopReason reason) {
+  const auto used_up = [](const std::string& what, const std::string& option) {
+    return "until the allowed " + what + " was used up (<code>--max-" + option + "</code>)";
+  };
+  switch (reason) {
     case StopReason::time:
-      text += "the time that was asked for";
-      break;
+      return "the time that was asked for";
     case StopReason::amplitude:
-      text += "until the amplitude was below the one asked for";
-      break;
+      return "until the amplitude was below the one asked for";
     case StopReason::impact_budget:
-      text += "until the allowed number of impacts was used up (<code>--max-impacts</code>)";
-      break;
+      return used_up("number of impacts", "impacts");
     case StopReason::half_cycle_budget:
-      text += "until the allowed number of half cycles was used up (<code>--max-half-cycles</code>)";
-      break;
+      return used_up("number of half cycles", "half-cycles");
     case StopReason::time_budget:
-      text += "until the allowed time was used up (<code>--max-time</code>)";
-      break;
+      return used_up("time", "time");
     case StopReason::step_budget:
-      text += "until the allowed number of steps was used up (<code>--max-steps</code>)";
-      break;
+      return used_up("number of steps", "steps");
   }
-  return text + ".</p>\n";
+  return "";
+}
+
+std::string engine_sentence(const Findings& findings) {
+  return "<p>" + std::visit(Method{findings.several()}, findings.run.engine) + " It was followed for " +
+         Quantities(findings.subject.scales).time(findings.run.end_time) + ", " +
+         end_in_words(findings.run.stop_reason) + ".</p>\n";
 }
 
 }  // namespace
@@ -196,19 +193,13 @@ std::string scene_html(const Findings& findings) {
           ? "<p>Numbers are given in units first and, in brackets, dimensionless: lengths in units of the "
             "clearance ε" +
                 std::string(findings.several() ? " of the first damper" : "") +
-                ", times in periods 2π/Ω of the primary mass on its spring, velocities in units of "
-                "εΩ, "
+                ", times in periods 2π/Ω of the primary mass on its spring, velocities in units of εΩ, "
                 "energies in units of Kε².</p>\n"
           : "<p>Lengths are in units of " +
                 std::string(findings.several() ? "one length ε" : "the clearance ε of the secondary mass") +
-                ", times <i>t</i> in units of "
-                "1/Ω, Ω "
-                "= √(K/M) "
-                "being the primary mass's natural frequency, velocities in units of εΩ, energies in units of "
-                "Kε². A "
-                "scene file may give masses in kilograms and lengths in millimetres instead; this page then "
-                "gives "
-                "both.</p>\n";
+                ", times <i>t</i> in units of 1/Ω, Ω = √(K/M) being the primary mass's natural frequency, "
+                "velocities in units of εΩ, energies in units of Kε². A scene file may give masses in "
+                "kilograms and lengths in millimetres instead; this page then gives both.</p>\n";
   return scene_table(findings.subject) + (findings.several() ? dampers_table(findings.subject) : "") +
          scales + engine_sentence(findings);
 }

@@ -1,7 +1,10 @@
 #include "application/report/quantities.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "impact_damper/base/number_text.hpp"
 
@@ -32,24 +35,12 @@ std::string typeset(std::string text) {
 }  // namespace
 
 std::string escaped(std::string_view text) {
+  constexpr std::array<std::pair<char, std::string_view>, 4> entities{
+      {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}}};
   std::string html;
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        html += "&amp;";
-        break;
-      case '<':
-        html += "&lt;";
-        break;
-      case '>':
-        html += "&gt;";
-        break;
-      case '"':
-        html += "&quot;";
-        break;
-      default:
-        html += c;
-    }
+    const auto* const entity = std::ranges::find(entities, c, &std::pair<char, std::string_view>::first);
+    html += entity == entities.end() ? std::string_view(&c, 1) : entity->second;
   }
   return html;
 }

@@ -56,7 +56,7 @@ std::string paragraph_html(const std::string& text);
 struct HtmlTable {
   std::string caption;
   std::vector<std::string> heads;
-  std::vector<std::vector<std::string>> rows;
+  std::vector<std::vector<std::string>> rows = {};
 };
 std::string table_html(const HtmlTable& table);
 

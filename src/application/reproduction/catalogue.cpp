@@ -30,6 +30,36 @@ Scene changed(const Changes& changes, Scene scene) {
 constexpr TextRule a_number{1, 8, true};           // of a figure
 constexpr NumberRange amplitudes{0, 1e12, false};  // lengths of time too
 
+// The parts of a run that a record names, beside its history; those that tables draw come first.
+struct RecordPart {
+  std::string_view name;
+  bool Record::*is_recorded;
+};
+constexpr std::array<RecordPart, 4> record_parts{{{"half_cycles", &Record::half_cycles},
+                                                  {"impacts", &Record::impacts},
+                                                  {"contacts", &Record::contacts},
+                                                  {"energy", &Record::energy}}};
+
+// What a table draws: how many curves, and of each run so many of the first parts, and its history.
+struct Drawn {
+  TableKind table;
+  enum Curves { none, one, some } curves = none;
+  std::size_t parts = 0;
+  bool history = false;
+};
+constexpr std::array<Drawn, 10> all_drawn{{{TableKind::motion, Drawn::one, 3, true},
+                                           {TableKind::decay, Drawn::some, 1},
+                                           {TableKind::loss_factor, Drawn::some, 1},
+                                           {TableKind::phase, Drawn::one, 3},
+                                           {TableKind::response},
+                                           {TableKind::largest_response, Drawn::one, 1},
+                                           {TableKind::response_map},
+                                           {TableKind::design_charts},
+                                           {TableKind::damper_sets, Drawn::some, 1},
+                                           {TableKind::drawing}}};
+static_assert(all_drawn.size() == all_of<TableKind>.size());
+const Drawn& drawn_by(TableKind table) { return *std::ranges::find(all_drawn, table, &Drawn::table); }
+
 Record read_record(ObjectReader& scene) {
   Record record;
   record.half_cycles = false;
@@ -37,22 +67,15 @@ Record read_record(ObjectReader& scene) {
   std::vector<std::string> words;
   scene.required("record", words, TextRule{}, std::size_t{5});
   for (std::size_t i = 0; i < words.size(); ++i) {
-    const std::string& word = words[i];
-    if (word == "half_cycles") {
-      record.half_cycles = true;
-    } else if (word == "impacts") {
-      record.impacts = true;
-    } else if (word == "contacts") {
-      record.contacts = true;
-    } else if (word == "energy") {
-      record.energy = true;
-    } else if (word == "history") {
+    const auto* const part = std::ranges::find(record_parts, words[i], &RecordPart::name);
+    if (part != record_parts.end())
+      record.*part->is_recorded = true;
+    else if (words[i] == "history")
       history = true;
-    } else {
+    else
       scene.reject("record", i,
                    "must be one of half_cycles, impacts, contacts, energy, history, got the string " +
-                       in_quotes(word));
-    }
+                       in_quotes(words[i]));
   }
   double before = std::numeric_limits<double>::infinity();
   for (ObjectReader item : scene.optional_objects("history_below", 100)) {
@@ -60,10 +83,9 @@ Record read_record(ObjectReader& scene) {
     const bool is_read = item.required("amplitude", window.amplitude, amplitudes);
     item.required("length", window.length, amplitudes);
     item.required("count", window.count, within(2, double(most_samples)));
-    if (is_read && !(window.amplitude < before)) {
+    if (is_read && !(window.amplitude < before))
       item.reject("amplitude", "must be below that of the window before, " + number_text(before) + ", got " +
                                    number_text(window.amplitude));
-    }
     if (is_read) before = window.amplitude;
     record.history_below.push_back(window);
   }
@@ -98,33 +120,13 @@ std::vector<FigureCurve> read_curves(ObjectReader& figure, TableKind table) {
   return curves;
 }
 
-// Returns the first part that `record` lacks of what a table of this kind draws, or a null pointer.
-const char* missing_record(TableKind table, const Record& record) {
-  switch (table) {
-    case TableKind::motion:
-      if (record.history_below.empty()) return "history";
-      return record.half_cycles ? (record.impacts ? (record.contacts ? nullptr : "contacts") : "impacts")
-                                : "half_cycles";
-    case TableKind::decay:
-    case TableKind::loss_factor:
-    case TableKind::largest_response:
-    case TableKind::damper_sets:
-      return record.half_cycles ? nullptr : "half_cycles";
-    case TableKind::phase:
-      return record.half_cycles ? (record.impacts ? (record.contacts ? nullptr : "contacts") : "impacts")
-                                : "half_cycles";
-    case TableKind::response:
-    case TableKind::response_map:
-    case TableKind::design_charts:
-    case TableKind::drawing:
-      return nullptr;
-  }
-  return nullptr;
-}
-
-bool is_without_curves(TableKind table) {
-  return table == TableKind::drawing || table == TableKind::response || table == TableKind::response_map ||
-         table == TableKind::design_charts;
+// Returns the first part that `record` lacks of what a table of this kind draws; empty if it has all.
+std::string missing_record(TableKind table, const Record& record) {
+  const Drawn& drawn = drawn_by(table);
+  if (drawn.history && record.history_below.empty()) return "history";
+  for (std::size_t i = 0; i < drawn.parts; ++i)
+    if (!(record.*record_parts[i].is_recorded)) return std::string(record_parts[i].name);
+  return "";
 }
 
 // Returns a null pointer if a table of this kind draws such a response, else a name of what it draws.
@@ -155,17 +157,15 @@ void read_amplitudes(ObjectReader& item, std::vector<double>& range) {
 
 void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& catalogue) {
   const std::size_t count = figure.curves.size();
-  const bool single = figure.table == TableKind::motion || figure.table == TableKind::phase ||
-                      figure.table == TableKind::largest_response;
-  const bool none = is_without_curves(figure.table);
-  if (single ? count != 1 : none ? count != 0 : count == 0) {
+  const Drawn::Curves curves = drawn_by(figure.table).curves;
+  const bool single = curves == Drawn::one, none = curves == Drawn::none;
+  if (single ? count != 1 : none ? count != 0 : count == 0)
     item.reject("curves", "must be " +
                               std::string(single ? "one curve"
                                           : none ? "empty"
                                                  : "at least one curve") +
                               " with \"table\": " + in_quotes(name_of(figure.table)) + ", got " +
                               std::to_string(count));
-  }
   if (figure.table != TableKind::damper_sets && (count > 1) != item.has("varied")) {
     item.reject("varied", "must be given if, and only if, there are several curves, got " +
                               std::string(count > 1 ? "none" : "it") + " for " + std::to_string(count));
@@ -176,8 +176,9 @@ void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& cat
         const CatalogueRun* const run = find_run(catalogue.runs, name);
         if (!run && !name.empty())
           item.reject("curves", i, "must draw runs of this catalogue, got the string " + in_quotes(name));
-        if (const char* const missing = run ? missing_record(figure.table, run->record) : nullptr)
-          item.reject("curves", i, "needs \"" + std::string(missing) + "\" in the record of run " + name);
+        if (const std::string missing = run ? missing_record(figure.table, run->record) : "";
+            !missing.empty())
+          item.reject("curves", i, "needs \"" + missing + "\" in the record of run " + name);
       }
     }
     return;
@@ -190,10 +191,8 @@ void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& cat
         item.reject("curves", i, "must draw a scene of this catalogue, got the string " + in_quotes(name));
       continue;
     }
-    if (const char* missing = missing_record(figure.table, scene->record)) {
-      item.reject("curves", i,
-                  "needs \"" + std::string(missing) + "\" in the scene's record, which " + name + " lacks");
-    }
+    if (const std::string missing = missing_record(figure.table, scene->record); !missing.empty())
+      item.reject("curves", i, "needs \"" + missing + "\" in the scene's record, which " + name + " lacks");
     const auto opens_window = [&](const AmplitudeWindow& window) {
       return window.amplitude == figure.window;
     };
@@ -390,7 +389,7 @@ Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
   if (figure.table == TableKind::damper_sets) read_amplitudes(item, figure.range);
   if (figure.table == TableKind::motion) item.required("window", figure.window.emplace(), amplitudes);
   if (figure.table != TableKind::motion && figure.table != TableKind::damper_sets &&
-      !is_without_curves(figure.table))
+      drawn_by(figure.table).curves != Drawn::none)
     item.required("down_to", figure.down_to.emplace(), amplitudes);
   check_curves(item, figure, catalogue);
   return figure;
@@ -421,6 +420,16 @@ Catalogue read_whole(JsonDocument document) {
   return catalogue;
 }
 
+template <class Entry>
+const Entry* find_in(const std::vector<Entry>& entries, std::string_view name, std::string Entry::*key) {
+  const auto found = std::ranges::find(entries, name, key);
+  return found == entries.end() ? nullptr : &*found;
+}
+
+void add_if_new(std::vector<std::string>& names, const std::string& name) {
+  if (!name.empty() && std::ranges::find(names, name) == names.end()) names.push_back(name);
+}
+
 }  // namespace
 
 Catalogue read_catalogue(const std::filesystem::path& file) {
@@ -431,19 +440,17 @@ Catalogue parse_catalogue(const std::string& name, const std::string& text) {
 }
 
 const CatalogueScene* find_scene(const Catalogue& catalogue, std::string_view name) {
-  const auto found = std::ranges::find(catalogue.scenes, name, &CatalogueScene::name);
-  return found == catalogue.scenes.end() ? nullptr : &*found;
+  return find_in(catalogue.scenes, name, &CatalogueScene::name);
 }
-
 const CatalogueRun* find_run(const std::vector<CatalogueRun>& runs, std::string_view name) {
-  const auto found = std::ranges::find(runs, name, &CatalogueRun::name);
-  return found == runs.end() ? nullptr : &*found;
+  return find_in(runs, name, &CatalogueRun::name);
 }
-
 const CatalogueResponse* find_response(const std::vector<CatalogueResponse>& responses,
                                        std::string_view name) {
-  const auto found = std::ranges::find(responses, name, &CatalogueResponse::name);
-  return found == responses.end() ? nullptr : &*found;
+  return find_in(responses, name, &CatalogueResponse::name);
+}
+const Figure* find_figure(const Catalogue& catalogue, std::string_view number) {
+  return find_in(catalogue.figures, number, &Figure::number);
 }
 
 Scene changed_scene(const CatalogueRun& run, Scene scene) { return changed(run.set, std::move(scene)); }
@@ -458,28 +465,20 @@ Response asked_for(const CatalogueResponse& response, const Scene& scene) {
   return asked;
 }
 
-const Figure* find_figure(const Catalogue& catalogue, std::string_view number) {
-  const auto found = std::ranges::find(catalogue.figures, number, &Figure::number);
-  return found == catalogue.figures.end() ? nullptr : &*found;
-}
-
 std::string file_stem(const Figure& figure) { return std::filesystem::path(figure.script).stem().string(); }
 
 std::string sweep_stem(const Figure& figure) { return std::filesystem::path(figure.plan).stem().string(); }
 
 std::vector<std::string> scenes_of(const Figure& figure) {
   std::vector<std::string> scenes;
-  for (const FigureCurve& curve : figure.curves)
-    if (!curve.scene.empty() && std::ranges::find(scenes, curve.scene) == scenes.end())
-      scenes.push_back(curve.scene);
+  for (const FigureCurve& curve : figure.curves) add_if_new(scenes, curve.scene);
   return scenes;
 }
 
 std::vector<std::string> runs_of(const Figure& figure) {
   std::vector<std::string> runs;
   for (const FigureCurve& curve : figure.curves)
-    for (const std::string& name : {curve.run, curve.alone})
-      if (!name.empty() && std::ranges::find(runs, name) == runs.end()) runs.push_back(name);
+    for (const std::string& name : {curve.run, curve.alone}) add_if_new(runs, name);
   return runs;
 }
 

@@ -1,9 +1,10 @@
 #include "application/reproduction/claims.hpp"
 
+#include <algorithm>
+#include <array>
 #include <set>
 #include <stdexcept>
 
-#include "application/reproduction/measure_numbers.hpp"
 #include "application/reproduction/measures.hpp"
 #include "application/reproduction/words.hpp"
 #include "impact_damper/base/number_text.hpp"
@@ -13,7 +14,20 @@
 namespace impact_damper {
 namespace {
 
-constexpr std::string_view schema = "impact-damper/claims/1";
+constexpr std::optional<double> none = std::nullopt;
+
+double value_of(const std::string& digits) {
+  const auto value = parse_number(digits);
+  if (!value || !last_digit(digits))
+    throw std::invalid_argument("must be a number as printed, digits with at most one point, got \"" +
+                                digits + "\"");
+  return *value;
+}
+
+// Returns `units` of the last digit of a number, at most a tenth of the number.
+double tolerance_of(const std::string& digits, double units) {
+  return std::min(units * *last_digit(digits), value_of(digits) / 10);
+}
 
 Interval read_interval(ObjectReader& object, std::string_view key) {
   std::vector<std::optional<double>> ends;
@@ -125,12 +139,16 @@ void require_explanation(ObjectReader& object, std::string_view key, std::string
   if (const auto problem = problem_of_words(text, names, Fields::allowed)) object.reject(key, *problem);
 }
 
+void read_statement(ObjectReader& object, Statement& statement) {
+  object.required("id", statement.id, a_name);
+  object.required("section", statement.section, some_text);
+  object.required("statement", statement.statement, some_text);
+  object.required("printed", statement.printed, some_text);
+}
+
 Claim read_claim(ObjectReader& object) {
   Claim claim;
-  object.required("id", claim.id, a_name);
-  object.required("section", claim.section, some_text);
-  object.required("statement", claim.statement, some_text);
-  object.required("printed", claim.printed, some_text);
+  read_statement(object, claim);
   object.optional("source", claim.source);
   claim.allowed = read_allowed(object);
   claim.measure = read_measure(object.required_object("measure"));
@@ -168,19 +186,9 @@ Claim read_claim(ObjectReader& object) {
   return claim;
 }
 
-OpenStatement read_open_statement(ObjectReader& object) {
-  OpenStatement statement;
-  object.required("id", statement.id, a_name);
-  object.required("section", statement.section, some_text);
-  object.required("statement", statement.statement, some_text);
-  object.required("printed", statement.printed, some_text);
-  object.required("explanation", statement.explanation, some_text);
-  return statement;
-}
-
 ClaimsFile read_document(JsonDocument document) {
   ObjectReader root = document.root();
-  root.word("schema", {schema});
+  root.word("schema", {"impact-damper/claims/1"});
   root.require("schema");
   ClaimsFile file;
   std::set<std::string> ids;
@@ -194,8 +202,10 @@ ClaimsFile read_document(JsonDocument document) {
     once(object, file.claims.back().id);
   }
   for (ObjectReader object : root.optional_objects("open", most)) {
-    file.open.push_back(read_open_statement(object));
-    once(object, file.open.back().id);
+    OpenStatement& open = file.open.emplace_back();
+    read_statement(object, open);
+    object.required("explanation", open.explanation, some_text);
+    once(object, open.id);
   }
   document.finish();
   return file;
@@ -203,33 +213,92 @@ ClaimsFile read_document(JsonDocument document) {
 
 }  // namespace
 
-std::string_view name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::reproduced:
-      return "reproduced";
-    case Verdict::not_reproduced:
-      return "not reproduced";
-    case Verdict::corrected:
-      return "corrected";
-    case Verdict::derived:
-      return "derived";
-    case Verdict::holds:
-      return "holds";
-    case Verdict::does_not_hold:
-      return "does not hold";
-  }
-  return {};
+const std::vector<PrintedKind>& printed_kinds() {
+  static const std::vector<PrintedKind> table{
+      {"number", 1, {}, "A number as printed: half a unit of its last digit, at most a tenth of the number."},
+      {"approximate",
+       1,
+       {},
+       "Approximately a number: a unit of its last digit, at most a tenth of the number."},
+      {"range", 2, {}, "A range: at each end a unit of its last digit, at most a tenth of the number."},
+      {"at_least",
+       1,
+       {},
+       "A bound as printed: half a unit of its last digit, at most a tenth of the number."},
+      {"at_most", 1, {}, "A bound as printed: half a unit of its last digit, at most a tenth of the number."},
+      {"count", 1, {}, "A count: nothing to round."},
+      {"all", 0, {1, 1}, "Every one, so a share of 1."},
+      {"mostly", 0, {0.5, 1}, "More often than not, so a share of a half at least."},
+      {"some", 0, {0.05, 0.95}, "Some but not all: a share of 5 to 95 percent."},
+      {"more", 0, {1.01, none}, "More than the other: a ratio above 1, by a percent at least."},
+      {"less", 0, {none, 0.99}, "Less than the other: a ratio below 1, by a percent at least."},
+      {"rises", 0, {0, none}, "It rises: a slope above 0."},
+      {"falls", 0, {none, 0}, "It falls: a slope below 0."},
+      {"proportional", 0, {0.9, 1.1}, "Proportional: an exponent of 1, a tenth to either side."},
+      {"nearly_one_curve", 0, {0, 10}, "Nearly one curve: a mean spread of a tenth."},
+      {"same_curve",
+       0,
+       {0, 3},
+       "The same but for chaos, which moves curves by up to 1 percent: three times that."},
+      {"small", 0, {-0.1, 0.1}, "Small or close beside another: at most a tenth of it."},
+      {"large_number", 0, {10, none}, "A large number: ten at least."},
+      {"wide", 0, {3, none}, "A wide range: a factor of three at least, half a decade."},
+      {"equal_angles", 0, {0, 5}, "Equal in a figure: 5 degrees at most."},
+      {"unequal_angles", 0, {5, none}, "Unequal in a figure: 5 degrees at least."},
+  };
+  return table;
 }
 
-ClaimsFile read_claims_file(const std::filesystem::path& file) {
+std::optional<double> last_digit(std::string_view digits) {
+  const std::size_t point = digits.find('.');
+  const std::size_t last =
+      point == std::string_view::npos ? digits.find_last_not_of('0') : digits.find_last_not_of('.');
+  if (digits.empty() || digits.find_first_not_of("0123456789.") != std::string_view::npos ||
+      digits.find_first_of("123456789") == std::string_view::npos ||
+      digits.find('.', point + 1) < digits.size() || !parse_number(digits))
+    return std::nullopt;
+  std::string unit(digits);
+  for (std::size_t i = 0; i < unit.size(); ++i)
+    if (unit[i] != '.') unit[i] = i == last ? '1' : '0';
+  unit.erase(0, std::min(unit.find_first_not_of('0'), unit.size()));
+  return parse_number(unit.starts_with('.') ? '0' + unit : unit);
+}
+
+Allowed allowed_by(const PrintedKind& kind, const std::vector<std::string>& digits) {
+  if (digits.size() != kind.digits)
+    throw std::invalid_argument("must be " + std::to_string(kind.digits) + " numbers as printed, got " +
+                                std::to_string(digits.size()));
+  Allowed allowed{.printed = kind.interval, .reason = std::string(kind.reason)};
+  if (digits.empty()) return allowed;
+  const double first = value_of(digits.front()), last = value_of(digits.back());
+  if (!(first <= last)) throw std::invalid_argument("must ascend");
+  allowed.printed = {first, last};
+  if (kind.name == "number") {
+    allowed.below = allowed.above = tolerance_of(digits[0], 0.5);
+  } else if (kind.name == "approximate" || kind.name == "range") {
+    allowed.below = tolerance_of(digits.front(), 1);
+    allowed.above = tolerance_of(digits.back(), 1);
+  } else if (kind.name == "at_least") {
+    allowed.printed.most = none;
+    allowed.below = tolerance_of(digits[0], 0.5);
+  } else if (kind.name == "at_most") {
+    allowed.printed.least = none;
+    allowed.above = tolerance_of(digits[0], 0.5);
+  }
+  return allowed;
+}
+
+std::string_view name_of(Verdict verdict) {
+  constexpr std::array<std::string_view, 6> names{"reproduced", "not reproduced", "corrected",
+                                                  "derived",    "holds",          "does not hold"};
+  return names.at(static_cast<std::size_t>(verdict));
+}
+
+ClaimsFile read_claims(const std::filesystem::path& file) {
   return read_document(JsonDocument::read(file, claims_kind));
 }
-ClaimsFile parse_claims_file(const std::string& name, const std::string& text) {
+ClaimsFile parse_claims(const std::string& name, const std::string& text) {
   return read_document(JsonDocument::parse(name, text));
-}
-std::vector<Claim> read_claims(const std::filesystem::path& file) { return read_claims_file(file).claims; }
-std::vector<Claim> parse_claims(const std::string& name, const std::string& text) {
-  return parse_claims_file(name, text).claims;
 }
 
 Verdict recorded_for(const Claim& claim, std::string_view engine) {

@@ -4,7 +4,7 @@
 //    "claims": [{"id": "failure-04", "section": "3, Effects of the coefficient of restitution",
 //                "statement": "...",            what is claimed, in our words
 //                "printed": "approximately 0.15",  as the paper prints it
-//                "kind": "approximate", "digits": ["0.15"],  how it is judged: printed.hpp
+//                "kind": "approximate", "digits": ["0.15"],  how it is judged: PrintedKind
 //                "measure": {"name": "first_missed", "scenes": ["nu2-e04"]},
 //                "words": "first missed at {}", "also": {},  our result in the statement's terms: words.hpp
 //                "verdict": "not reproduced", "explanation": "...", "evidence": "..."}]}
@@ -39,11 +39,52 @@
 #include <string_view>
 #include <vector>
 
-#include "application/reproduction/printed.hpp"
 #include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/io/json_reader.hpp"
 
 namespace impact_damper {
+
+// The interval that a result must lie in, from what the paper prints: one rule for all claims. It depends on
+// the printed digits or word alone, never on the result found here.
+//
+//   a number              half a unit of its last digit to either side: what rounding leaves open
+//   "approximately" it    a whole unit to either side, and so of "about" and "nearly" it
+//   a range               the same at each end
+//   a bound               half a unit on the side of the bound; open on the other
+//   a count               no tolerance
+//   a word                the same interval wherever the word, or one that says the same, is used
+//
+// No number allows more than a tenth of itself, so that what is printed with one digit is not held more
+// loosely than what is printed with two. A tenth is also what "proportional", "nearly one curve" and "small"
+// allow.
+//
+// The last digit of a whole number is the last that is not zero: "31" is of two digits, "10" of one.
+struct Interval {  // both ends included; absent: none
+  std::optional<double> least, most;
+};
+
+struct PrintedKind {
+  std::string_view name;
+  std::size_t digits;       // how many printed numbers it takes
+  Interval interval;        // of a word; empty for numbers
+  std::string_view reason;  // why the interval is what it is
+};
+const std::vector<PrintedKind>& printed_kinds();
+
+// Returns the unit of the last digit of a number as printed, "0.339" -> 0.001, "31" -> 1, "10" -> 10. Absent
+// if the text is not digits with at most one point among them, or all of them are zero.
+std::optional<double> last_digit(std::string_view digits);
+
+// The interval that a printed value allows: the value (or both ends of the range) before the tolerance, the
+// tolerance at each end, and its reason.
+struct Allowed {
+  Interval printed;
+  double below = 0, above = 0;  // tolerances, >= 0
+  std::string reason;
+};
+// Returns it for `digits`: as many as the kind takes, each with a last_digit(), a range ascending. Throws
+// std::invalid_argument otherwise.
+Allowed allowed_by(const PrintedKind& kind, const std::vector<std::string>& digits);
 
 enum class Verdict { reproduced, not_reproduced, corrected, derived, holds, does_not_hold };
 std::string_view name_of(Verdict verdict);  // "not reproduced" and so on
@@ -58,8 +99,11 @@ struct MeasureCall {
   std::vector<std::string> responses{};  // of the catalogue, by their names
 };
 
-struct Claim {
+struct Statement {
   std::string id, section, statement, printed;
+};
+
+struct Claim : Statement {
   Source source = Source::paper;
   Allowed allowed;
   MeasureCall measure;
@@ -76,8 +120,8 @@ struct Claim {
 };
 
 // A statement of the paper that has no measure yet, and so no verdict.
-struct OpenStatement {
-  std::string id, section, statement, printed, explanation;
+struct OpenStatement : Statement {
+  std::string explanation;
 };
 
 struct ClaimsFile {
@@ -91,11 +135,8 @@ Verdict recorded_for(const Claim& claim, std::string_view engine);
 // Throws IoError if the file cannot be read, InputError if it is not valid, as with unknown measures or
 // measure parameters, or duplicate ids.
 inline constexpr FileKind claims_kind{"claims file", 1 << 22};
-ClaimsFile read_claims_file(const std::filesystem::path& file);
-ClaimsFile parse_claims_file(const std::string& name, const std::string& text);
-// Return the claims alone.
-std::vector<Claim> read_claims(const std::filesystem::path& file);
-std::vector<Claim> parse_claims(const std::string& name, const std::string& text);
+ClaimsFile read_claims(const std::filesystem::path& file);
+ClaimsFile parse_claims(const std::string& name, const std::string& text);
 
 // Returns the verdict for `ours`, the median of an ensemble. In the allowed interval widened by the tolerance
 // it is reproduced, or derived for a claim recorded as that; otherwise corrected if `ours` lies in the

@@ -40,10 +40,9 @@ bool read_text_of(ObjectReader& object, std::string_view key, std::string& targe
 
 // Reads a cited file. False if its SHA-256 is not valid.
 bool read_cited_file(ObjectReader object, CitedFile& file) {
-  read_text_of(
-      object, "file", file.file, is_path,
-      "a path of names of letters, digits, '-', '_' and '.', the first of each a letter or digit, divided "
-      "by '/', of up to 200 characters");
+  read_text_of(object, "file", file.file, is_path,
+               "a path of names of letters, digits, '-', '_' and '.', the first of each a letter or digit, "
+               "divided by '/', of up to 200 characters");
   if (object.has("swhid"))
     read_text_of(object, "swhid", file.swhid, is_swhid,
                  "\"swh:1:cnt:\" and 40 hexadecimal digits in lower case");

@@ -1,9 +1,12 @@
 #include "application/reproduction/measures.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <set>
 #include <stdexcept>
 
+#include "application/reproduction/measures_parts.hpp"
 #include "application/reproduction/scene_runs.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/simulate.hpp"
@@ -24,17 +27,76 @@ void multiply(Run& run, double factor) {
 }
 
 // Returns a record of all that measures use.
-Record measured() {
-  Record record;
-  record.impacts = record.contacts = true;
-  return record;
-}
+Record measured() { return {.impacts = true, .contacts = true}; }
+
+constexpr NumberRange above_up_to(double least, double most) { return {least, most, false}; }
+constexpr NumberRange amplitudes = above_up_to(0, 1e12);
+
+constexpr std::array<MeasureNumber, 19> measure_numbers{{
+    {"amplitude", amplitudes, 0, "amplitude of a half cycle, in units of the clearance"},
+    {"averaged_over", within(10, 18), 2, "half cycles that the loss factor is averaged over"},
+    {"damping_ratio", above_up_to(0, 0.5), 0, "viscous damping ratio zeta of a decay with enough peaks"},
+    {"eta", above_up_to(0, 1e3), 0, "averaged loss factor per radian"},
+    {"factor", above_up_to(1, 1e3), 0, "by how much a value or a time step is divided"},
+    {"from", amplitudes, 0, "least amplitude looked at, in units of the clearance; below \"to\""},
+    {"half_cycles", within(1, 1000), 1, "half cycles looked at"},
+    {"impacts", within(0, 1000), 1, "impacts in a half cycle"},
+    {"last", within(1, 10000), 1, "how many of the last rows of a curve"},
+    {"mass_ratio", above_up_to(0, 1e6), 0, "mass ratio nu of a scene of the measure's own"},
+    {"most", within(1, 1000), 1, "impacts per half cycle in the highest regular window"},
+    {"power", within(-10, 10), 0, "power of the amplitude that the impacts' speed is divided by"},
+    {"restitution", within(0, 1), 0, "coefficient of restitution e"},
+    {"steps_per_contact", within(1, 1000), 0, "time steps in a nominal contact"},
+    {"stuck_speed", above_up_to(0, 1e6), 0, "relative speed of impact below which the masses join"},
+    {"to", amplitudes, 0, "largest amplitude looked at, in units of the clearance"},
+    {"until_time", above_up_to(0, 1e3), 0, "end of a scene of the measure's own, in units of 1/Omega_n"},
+    {"within", within(0, 0.9), 0, "share by which a constant may be missed either way"},
+    {"x0", above_up_to(0, 1e6), 0, "release of a scene of the measure's own, in units of the clearance"},
+}};
 
 std::vector<Run> simulated_members(const Run& first, const EnsembleOptions& options) {
   std::vector<Scene> members = ensemble_of(first.scene, options);
   members.erase(members.begin());
   return simulate_scenes(members, first.engine, measured(), options.threads);
 }
+
+// Applies a measure to what its runs are.
+struct Finder {
+  Asked asked;
+
+  Spread operator()(FindInRun find) const {
+    std::vector<double> values;
+    for (const Run& run : asked.ensemble()) values.push_back(find(asked, run));
+    return spread_of(values);
+  }
+  Spread operator()(FindInPair find) const {
+    return in_groups([&](const RunGroup& pair) { return find(asked, *pair[0], *pair[1]); });
+  }
+  Spread operator()(FindInGroup find) const {
+    return in_groups([&](const RunGroup& group) { return find(asked, group); });
+  }
+  Spread operator()(FindOnce find) const {
+    const double value = find(asked);
+    return {value, value, value};
+  }
+  Spread operator()(FindSpread find) const { return find(asked); }
+
+ private:
+  // Looks at the members of all ensembles side by side, as far as every ensemble has them.
+  template <class Look>
+  Spread in_groups(Look look) const {
+    std::vector<double> values;
+    for (std::size_t member = 0;; ++member) {
+      RunGroup group;
+      for (const std::string& scene : asked.call.scenes) {
+        const std::vector<Run>& runs_of_scene = asked.runs.ensemble(scene);
+        if (member < runs_of_scene.size()) group.push_back(&runs_of_scene[member]);
+      }
+      if (group.size() < asked.call.scenes.size()) return spread_of(values);
+      values.push_back(look(group));
+    }
+  }
+};
 
 }  // namespace
 
@@ -121,28 +183,44 @@ const std::vector<RecordedColumn>& recorded_columns() {
   return table;
 }
 
+double Asked::number(const std::string& name) const {
+  const auto found = call.numbers.find(name);
+  if (found == call.numbers.end())
+    throw std::invalid_argument("measure " + call.name + ": " + name + " is missing");
+  return found->second;
+}
+
 const std::vector<Measure>& measures() {
   static const std::vector<Measure> table = [] {
     std::vector<Measure> all;
-    for (auto part : {loss_measures(), regime_measures(), model_measures(), audit_measures(),
-                      stuck_measures(), steady_measures(), damper_measures()})
+    for (auto part :
+         {loss_measures(), regime_measures(), model_measures(), steady_measures(), damper_measures()})
       all.insert(all.end(), part.begin(), part.end());
-    std::sort(all.begin(), all.end(), [](const Measure& a, const Measure& b) { return a.name < b.name; });
+    std::ranges::sort(all, {}, &Measure::name);
     return all;
   }();
   return table;
 }
 
 Spread measure(Runs& runs, const MeasureCall& call) {
-  for (const Measure& each : measures()) {
-    if (each.name != call.name) continue;
-    for (const std::string& scene : call.scenes)
-      if (!each.takes_dampers && !has_one_damper(runs.file(scene).scene))
-        throw std::invalid_argument("measure " + call.name + ": is of one damper, run " + scene +
-                                    " of a list of dampers");
-    return each.find(runs, call);
-  }
-  throw std::invalid_argument("measure: unknown name " + call.name);
+  const auto each = std::ranges::find(measures(), call.name, &Measure::name);
+  if (each == measures().end()) throw std::invalid_argument("measure: unknown name " + call.name);
+  for (const std::string& scene : call.scenes)
+    if (!each->takes_dampers && !has_one_damper(runs.file(scene).scene))
+      throw std::invalid_argument("measure " + call.name + ": is of one damper, run " + scene +
+                                  " of a list of dampers");
+  return std::visit(Finder{{runs, call}}, each->find);
+}
+
+bool MeasureNumber::allows(double value) const {
+  return range.allows(value) && (multiple_of == 0 || std::fmod(value, multiple_of) == 0);
+}
+
+const MeasureNumber& measure_number(std::string_view name) {
+  const auto* const found = std::ranges::find(measure_numbers, name, &MeasureNumber::name);
+  if (found == measure_numbers.end())
+    throw std::logic_error("no measure has a number called " + std::string(name));
+  return *found;
 }
 
 }  // namespace impact_damper

@@ -8,6 +8,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "application/reproduction/catalogue.hpp"
@@ -15,6 +17,7 @@
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/regimes.hpp"
+#include "impact_damper/base/text.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {
@@ -100,52 +103,62 @@ struct Count {
   std::size_t least = 0, most = 0;
 };
 
-// A measure finds its number in each member of an ensemble, or once if chaos does not affect it. It is NaN
-// where there is nothing to find, which agrees with no claim.
+// A call of a measure, and the runs that it may use.
+struct Asked {
+  Runs& runs;
+  const MeasureCall& call;
+
+  // Returns a number of the call. Throws std::invalid_argument if it is missing.
+  double number(const std::string& name) const;
+  bool is_between(double amplitude) const { return amplitude >= number("from") && amplitude <= number("to"); }
+  const AnalysisOptions& analysis() const { return runs.analysis(); }
+  // Return the run, and the ensemble, of the first scene.
+  const Run& file() const { return runs.file(call.scenes.front()); }
+  const std::vector<Run>& ensemble() const { return runs.ensemble(call.scenes.front()); }
+};
+
+// How a measure finds its number: in each member of the ensemble of its scene, in each pair of members of two
+// scenes, in each group of members, one of each scene, or once, where chaos does not affect it; or it finds a
+// spread of its own. The number is NaN where there is nothing to find, which agrees with no claim.
+using FindInRun = double (*)(const Asked&, const Run&);
+using FindInPair = double (*)(const Asked&, const Run&, const Run&);
+using RunGroup = std::vector<const Run*>;
+using FindInGroup = double (*)(const Asked&, const RunGroup&);
+using FindOnce = double (*)(const Asked&);
+using FindSpread = Spread (*)(const Asked&);
+using Find = std::variant<FindInRun, FindInPair, FindInGroup, FindOnce, FindSpread>;
+
 struct Measure {
   std::string_view name;
-  Spread (*find)(Runs& runs, const MeasureCall& call);
+  Find find;
   std::string_view meaning;
   std::vector<std::string_view> numbers = {};  // its parameters, all required
-  Count scenes = {1, 1};
+  Count scenes = usual_scenes(find);
   Count responses = {};
   bool takes_dampers = false;  // takes runs with a list of dampers, too
+
+  // Returns one or two, by what it looks at; none for what is found once.
+  static constexpr Count usual_scenes(const Find& find) {
+    if (std::holds_alternative<FindOnce>(find)) return {0, 0};
+    return std::holds_alternative<FindInPair>(find) ? Count{2, 2} : Count{1, 1};
+  }
 };
 const std::vector<Measure>& measures();  // in the order of names
-inline Spread once(double value) { return {value, value, value}; }
 
 // Returns the number of `call`. Throws what reading runs and simulating throw; std::invalid_argument if a run
 // lacks a column.
 Spread measure(Runs& runs, const MeasureCall& call);
 
-// The parts of the table, by subject: measures_*.cpp.
-std::vector<Measure> loss_measures();    // loss factor curves
-std::vector<Measure> regime_measures();  // bounce-down, windows, impact failure, phases
-std::vector<Measure> model_measures();   // engine against engine, wall and time step
-std::vector<Measure> audit_measures();   // the paper's slips
-std::vector<Measure> stuck_measures();   // the paper's stuck regime
-std::vector<Measure> steady_measures();  // steady motions under a force
-std::vector<Measure> damper_measures();  // several dampers
+// A number that measures take: one name means the same in every measure.
+struct MeasureNumber {
+  std::string_view name;
+  NumberRange range;
+  int multiple_of;  // 1: a whole number, 3 and 3.0 alike; 2: an even one; 0: any
+  std::string_view meaning;
 
-// For each member of the one scene of `call`, or for the members of all of them side by side.
-template <class Find>
-Spread over_members(Runs& runs, const MeasureCall& call, Find find) {
-  std::vector<double> values;
-  for (const Run& run : runs.ensemble(call.scenes.front())) values.push_back(find(run));
-  return spread_of(values);
-}
-template <class Find>
-Spread over_groups(Runs& runs, const MeasureCall& call, Find find) {
-  std::vector<double> values;
-  for (std::size_t member = 0;; ++member) {
-    std::vector<const Run*> group;
-    for (const std::string& scene : call.scenes) {
-      const std::vector<Run>& runs_of_scene = runs.ensemble(scene);
-      if (member < runs_of_scene.size()) group.push_back(&runs_of_scene[member]);
-    }
-    if (group.size() < call.scenes.size()) return spread_of(values);
-    values.push_back(find(group));
-  }
-}
+  bool allows(double value) const;
+};
+// Throws std::logic_error if no number is called that.
+const MeasureNumber& measure_number(std::string_view name);
 
 }  // namespace impact_damper

@@ -1,11 +1,13 @@
-// Measures on the curves of the averaged loss factor.
+// Measures on the curves of the averaged loss factor, and on the losses of several dampers.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <stdexcept>
+#include <string>
 
-#include "application/reproduction/measures.hpp"
 #include "application/reproduction/measures_parts.hpp"
+#include "impact_damper/analysis/damper_sets.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/analysis/theory.hpp"
@@ -18,21 +20,28 @@ Curve loss_curve(const Run& run, LossOrdinate which, const LossFactorOptions& fi
   const LossFactor loss = averaged_loss_factor(half_cycles_of(run), fit);
   const std::vector<double> y = ordinate(loss, run.scene, which);
   Curve curve;
-  for (std::size_t i = first == FirstPoint::counted ? 0 : 1; i < y.size(); ++i) {
-    if (!(loss.amplitude[i] >= from && loss.amplitude[i] <= to)) continue;
-    curve.x.push_back(loss.amplitude[i]);
-    curve.y.push_back(y[i]);
-  }
+  for (std::size_t i = first == FirstPoint::counted ? 0 : 1; i < y.size(); ++i)
+    if (loss.amplitude[i] >= from && loss.amplitude[i] <= to) curve.add(loss.amplitude[i], y[i]);
   return curve;
 }
 
-double log_slope(const Curve& curve) {
+Curve loss_curve(const Asked& asked, const Run& run, LossOrdinate which, FirstPoint first) {
+  return loss_curve(run, which, asked.analysis().loss, asked.number("from"), asked.number("to"), first);
+}
+
+double slope(const Curve& curve) {
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
-    const double x = logarithm(curve.x[i]), y = logarithm(curve.y[i]);
+    const double x = curve.x[i], y = curve.y[i];
     n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
   }
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+double log_slope(Curve curve) {
+  for (auto* column : {&curve.x, &curve.y})
+    for (double& value : *column) value = logarithm(value);
+  return slope(curve);
 }
 
 std::vector<std::vector<double>> bin_means(const std::vector<Curve>& curves, double from, double to,
@@ -43,252 +52,250 @@ std::vector<std::vector<double>> bin_means(const std::vector<Curve>& curves, dou
     const double low = from * exponential(width * bin), high = from * exponential(width * (bin + 1));
     std::vector<double> means;
     for (const Curve& curve : curves) {
-      double mean = 0;
-      int points = 0;
+      std::vector<double> within;
       for (std::size_t i = 0; i < curve.x.size(); ++i)
-        if (curve.x[i] >= low && curve.x[i] < high) mean += curve.y[i], ++points;
-      if (points > 0) means.push_back(mean / points);
+        if (curve.x[i] >= low && curve.x[i] < high) within.push_back(curve.y[i]);
+      if (!within.empty()) means.push_back(mean(within));
     }
     if (means.size() == curves.size()) all.push_back(means);
   }
   return all;
 }
 
+namespace {
+
+// Returns how far curves lie apart at equal x: the largest minus the least of their bin means divided by the
+// mean of these, in percent, for each of the bins that all of them reach.
 std::vector<double> bin_spreads_percent(const std::vector<Curve>& curves, double from, double to, int bins) {
   std::vector<double> spreads;
   for (const std::vector<double>& means : bin_means(curves, from, to, bins)) {
-    double total = 0;
-    for (const double mean : means) total += mean;
     const auto [least, most] = std::ranges::minmax(means);
-    spreads.push_back(100 * (most - least) / (total / static_cast<double>(curves.size())));
+    spreads.push_back(100 * (most - least) / mean(means));
   }
   return spreads;
 }
 
+}  // namespace
+
 double spread_percent(const std::vector<Curve>& curves, double from, double to, int bins) {
-  double sum = 0;
-  const std::vector<double> spreads = bin_spreads_percent(curves, from, to, bins);
-  for (const double spread : spreads) sum += spread;
-  return sum / static_cast<double>(spreads.size());
+  return mean(bin_spreads_percent(curves, from, to, bins));
 }
 
 double worst_spread_percent(const std::vector<Curve>& curves, double from, double to, int bins) {
-  const std::vector<double> spreads = bin_spreads_percent(curves, from, to, bins);
-  return spreads.empty() ? std::nan("") : *std::ranges::max_element(spreads);
+  return most(bin_spreads_percent(curves, from, to, bins));
 }
 
 namespace {
 
-// Applies `find` to the ordinates A eta_s / nu of all runs together, A in [from, to].
-template <class Find>
-Spread of_products(Runs& runs, const MeasureCall& call, FirstPoint first, Find find) {
-  return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
-    std::vector<double> all;
-    for (const Run* run : group) {
-      const Curve curve = loss_curve(*run, LossOrdinate::amplitude_times, runs.analysis().loss,
-                                     number(call, "from"), number(call, "to"), first);
-      all.insert(all.end(), curve.y.begin(), curve.y.end());
-    }
-    return all.empty() ? std::nan("") : find(all);
-  });
+// Returns the ordinates A eta_s / nu of all runs together.
+template <FirstPoint first = FirstPoint::left_out>
+std::vector<double> products(const Asked& asked, const RunGroup& group) {
+  std::vector<double> all;
+  for (const Run* run : group) {
+    const Curve curve = loss_curve(asked, *run, LossOrdinate::amplitude_times, first);
+    all.insert(all.end(), curve.y.begin(), curve.y.end());
+  }
+  return all;
 }
+
+template <FirstPoint first>
+double product_mid_range(const Asked& asked, const RunGroup& group) {
+  const std::vector<double> all = products<first>(asked, group);
+  if (all.empty()) return std::nan("");
+  const auto [least, most] = std::ranges::minmax(all);
+  return (least + most) / 2;
+}
+
+template <FirstPoint first>
+double product_half_range(const Asked& asked, const RunGroup& group) {
+  const std::vector<double> all = products<first>(asked, group);
+  if (all.empty()) return std::nan("");
+  const auto [least, most] = std::ranges::minmax(all);
+  return 100 * (most - least) / (most + least);
+}
+
+double product_mean(const Asked& asked, const RunGroup& group) { return mean(products(asked, group)); }
 
 using SpreadOfCurves = double (*)(const std::vector<Curve>&, double, double, int);
 template <LossOrdinate which, SpreadOfCurves spread = spread_percent>
-Spread collapse(Runs& runs, const MeasureCall& call) {
-  const double from = number(call, "from"), to = number(call, "to");
-  return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
-    std::vector<Curve> curves;
-    curves.reserve(group.size());
-    for (const Run* run : group) curves.push_back(loss_curve(*run, which, runs.analysis().loss, from, to));
-    return spread(curves, from, to, runs.analysis().bins);
-  });
+double collapse(const Asked& asked, const RunGroup& group) {
+  std::vector<Curve> curves;
+  for (const Run* run : group) curves.push_back(loss_curve(asked, *run, which));
+  return spread(curves, asked.number("from"), asked.number("to"), asked.analysis().bins);
 }
 
 // Returns the point of the highest ordinate.
 std::pair<double, double> highest(const Curve& curve) {
-  const auto top = std::max_element(curve.y.begin(), curve.y.end());
+  const auto top = std::ranges::max_element(curve.y);
   if (top == curve.y.end()) return {std::nan(""), std::nan("")};
   return {curve.x[static_cast<std::size_t>(top - curve.y.begin())], *top};
 }
 
-template <FirstPoint first>
-Spread product_mid_range(Runs& runs, const MeasureCall& call) {
-  return of_products(runs, call, first, [](const std::vector<double>& products) {
-    const auto [least, most] = std::ranges::minmax(products);
-    return (least + most) / 2;
-  });
-}
-
-template <FirstPoint first>
-Spread product_half_range(Runs& runs, const MeasureCall& call) {
-  return of_products(runs, call, first, [](const std::vector<double>& products) {
-    const auto [least, most] = std::ranges::minmax(products);
-    return 100 * (most - least) / (most + least);
-  });
-}
-
-Spread product_mean(Runs& runs, const MeasureCall& call) {
-  return of_products(runs, call, FirstPoint::left_out, mean);
-}
-
-Spread loss_slope(Runs& runs, const MeasureCall& call) {
-  return over_members(runs, call, [&](const Run& run) {
-    return log_slope(loss_curve(run, LossOrdinate::specific_secondary, runs.analysis().loss,
-                                number(call, "from"), number(call, "to")));
-  });
+double loss_slope(const Asked& asked, const Run& run) {
+  return log_slope(loss_curve(asked, run, LossOrdinate::specific_secondary));
 }
 
 template <LossFactorOptions AnalysisOptions::*fit>
-Spread largest_loss(Runs& runs, const MeasureCall& call) {
-  return over_members(runs, call, [&](const Run& run) {
-    return highest(loss_curve(run, LossOrdinate::eta, runs.analysis().*fit)).second;
-  });
+double largest_loss(const Asked& asked, const Run& run) {
+  return highest(loss_curve(run, LossOrdinate::eta, asked.analysis().*fit)).second;
 }
 
 template <LossFactorOptions AnalysisOptions::*fit>
-Spread largest_loss_amplitude(Runs& runs, const MeasureCall& call) {
-  return over_members(runs, call, [&](const Run& run) {
-    return highest(loss_curve(run, LossOrdinate::eta, runs.analysis().*fit)).first;
-  });
+double largest_loss_amplitude(const Asked& asked, const Run& run) {
+  return highest(loss_curve(run, LossOrdinate::eta, asked.analysis().*fit)).first;
 }
 
 // Closed forms of single impacts, nu -> 0.
-Spread single_impact_fold(Runs&, const MeasureCall& call) {
-  return once(fold_amplitude(number(call, "restitution")));
+double single_impact_fold(const Asked& asked) { return fold_amplitude(asked.number("restitution")); }
+double single_impact_peak_loss(const Asked& asked) {
+  return asked.number("mass_ratio") * peak_loss(asked.number("restitution"));
 }
-Spread single_impact_peak_loss(Runs&, const MeasureCall& call) {
-  return once(number(call, "mass_ratio") * peak_loss(number(call, "restitution")));
-}
-Spread single_impact_peak_product(Runs&, const MeasureCall& call) {
-  return once(peak_product_amplitude(number(call, "restitution")));
+double single_impact_peak_product(const Asked& asked) {
+  return peak_product_amplitude(asked.number("restitution"));
 }
 
-Spread product_peak_amplitude(Runs& runs, const MeasureCall& call) {
-  return over_members(runs, call, [&](const Run& run) {
-    const LossFactorOptions fit{static_cast<int>(number(call, "averaged_over"))};
-    return highest(
-               loss_curve(run, LossOrdinate::amplitude_times, fit, number(call, "from"), number(call, "to")))
-        .first;
-  });
+double product_peak_amplitude(const Asked& asked, const Run& run) {
+  const LossFactorOptions fit{static_cast<int>(asked.number("averaged_over"))};
+  return highest(
+             loss_curve(run, LossOrdinate::amplitude_times, fit, asked.number("from"), asked.number("to")))
+      .first;
 }
 
-Spread loss_near_span(Runs& runs, const MeasureCall& call) {
-  const double eta = number(call, "eta"), factor = number(call, "factor");
-  return over_members(runs, call, [&](const Run& run) {
-    double least = std::numeric_limits<double>::infinity(), most = 0;
-    const Curve curve =
-        loss_curve(run, LossOrdinate::eta, runs.analysis().loss, number(call, "from"), number(call, "to"));
-    for (std::size_t i = 0; i < curve.x.size(); ++i) {
-      if (!(curve.y[i] >= eta / factor && curve.y[i] <= eta * factor)) continue;
-      least = std::min(least, curve.x[i]);
-      most = std::max(most, curve.x[i]);
-    }
-    return most / least;
-  });
+double loss_near_span(const Asked& asked, const Run& run) {
+  const double eta = asked.number("eta"), factor = asked.number("factor");
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  const Curve curve = loss_curve(asked, run, LossOrdinate::eta);
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    if (!(curve.y[i] >= eta / factor && curve.y[i] <= eta * factor)) continue;
+    least = std::min(least, curve.x[i]);
+    most = std::max(most, curve.x[i]);
+  }
+  return most / least;
 }
 
-Spread mass_ratio_exponent(Runs& runs, const MeasureCall& call) {
-  return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
-    Curve points;
-    for (const Run* run : group) {
-      const Curve curve = loss_curve(*run, LossOrdinate::amplitude_times, runs.analysis().loss,
-                                     number(call, "from"), number(call, "to"));
-      points.x.push_back(run->scene.damper().mass_ratio);
-      points.y.push_back(run->scene.damper().mass_ratio * mean(curve.y));
-    }
-    return log_slope(points);
-  });
+double mean_product(const Asked& asked, const Run& run) { return mean(products(asked, {&run})); }
+
+double mass_ratio_exponent(const Asked& asked, const RunGroup& group) {
+  Curve points;
+  for (const Run* run : group) {
+    const double nu = run->scene.damper().mass_ratio;
+    points.add(nu, nu * mean_product(asked, *run));
+  }
+  return log_slope(points);
 }
 
-Spread product_ratio(Runs& runs, const MeasureCall& call) {
-  return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
-    const auto average = [&](const Run& run) {
-      return mean(loss_curve(run, LossOrdinate::amplitude_times, runs.analysis().loss, number(call, "from"),
-                             number(call, "to"))
-                      .y);
-    };
-    return average(*group[0]) / average(*group[1]);
-  });
+double product_ratio(const Asked& asked, const Run& first, const Run& second) {
+  return mean_product(asked, first) / mean_product(asked, second);
 }
 
 // Returns the curve of A eta over A.
-Curve product_of_total_loss(const Runs& runs, const Run& run, const MeasureCall& call) {
-  Curve curve =
-      loss_curve(run, LossOrdinate::eta, runs.analysis().loss, number(call, "from"), number(call, "to"));
+Curve product_of_total_loss(const Asked& asked, const Run& run) {
+  Curve curve = loss_curve(asked, run, LossOrdinate::eta);
   for (std::size_t i = 0; i < curve.x.size(); ++i) curve.y[i] *= curve.x[i];
   return curve;
 }
 
 // The mass ratio and the restitution of the scenes do not enter: their motion alone is compared with the
 // factor.
-Spread loss_ratio_exponent(Runs& runs, const MeasureCall& call) {
-  return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
-    const double ratio = mean(product_of_total_loss(runs, *group[0], call).y) /
-                         mean(product_of_total_loss(runs, *group[1], call).y);
-    return logarithm(ratio) / logarithm(number(call, "factor"));
-  });
+double loss_ratio_exponent(const Asked& asked, const Run& first, const Run& second) {
+  const double ratio =
+      mean(product_of_total_loss(asked, first).y) / mean(product_of_total_loss(asked, second).y);
+  return logarithm(ratio) / logarithm(asked.number("factor"));
 }
 
 // Weighted with the amplitude, so that all bins count alike: the scatter of eta is proportional to 1/A.
-Spread added_loss_error(Runs& runs, const MeasureCall& call) {
-  const double from = number(call, "from"), to = number(call, "to");
-  return over_groups(runs, call, [&](const std::vector<const Run*>& group) {
-    const Curve damped = product_of_total_loss(runs, *group[0], call),
-                undamped = product_of_total_loss(runs, *group[1], call);
-    double added = 0, expected = 0;
-    for (const auto& means :
-         bin_means({damped, undamped, {damped.x, damped.x}}, from, to, runs.analysis().bins)) {
-      added += means[0] - means[1];
-      expected += 2 * number(call, "damping_ratio") * means[2];
+double added_loss_error(const Asked& asked, const Run& first, const Run& second) {
+  const Curve damped = product_of_total_loss(asked, first), undamped = product_of_total_loss(asked, second);
+  double added = 0, expected = 0;
+  for (const auto& means : bin_means({damped, undamped, {damped.x, damped.x}}, asked.number("from"),
+                                     asked.number("to"), asked.analysis().bins)) {
+    added += means[0] - means[1];
+    expected += 2 * asked.number("damping_ratio") * means[2];
+  }
+  return added / expected - 1;
+}
+
+double tail_loss_ratio(const Asked& asked, const Run& run) {
+  const Curve all = loss_curve(run, LossOrdinate::eta, asked.analysis().loss);
+  const std::size_t count = std::min(all.y.size(), static_cast<std::size_t>(asked.number("last")));
+  const std::vector<double> tail(all.y.end() - static_cast<std::ptrdiff_t>(count), all.y.end());
+  return spread_of(tail).median / highest(all).second;
+}
+
+double smoothing_ratio(const Asked& asked, const Run& run) {
+  return largest_loss<&AnalysisOptions::smoother_loss>(asked, run) /
+         largest_loss<&AnalysisOptions::loss>(asked, run);
+}
+
+// Returns the width of the peak of eta: ln of the ratio of the amplitudes around it at half its height.
+double width_of_peak(const Run& run, const LossFactorOptions& fit) {
+  const Curve curve = loss_curve(run, LossOrdinate::eta, fit);
+  const auto top = std::ranges::max_element(curve.y);
+  if (top == curve.y.end()) return std::nan("");
+  auto first = top, last = top;
+  while (first != curve.y.begin() && *std::prev(first) >= *top / 2) --first;
+  while (std::next(last) != curve.y.end() && *std::next(last) >= *top / 2) ++last;
+  return logarithm(curve.x[static_cast<std::size_t>(first - curve.y.begin())] /
+                   curve.x[static_cast<std::size_t>(last - curve.y.begin())]);
+}
+double smoothing_width_ratio(const Asked& asked, const Run& run) {
+  return width_of_peak(run, asked.analysis().smoother_loss) / width_of_peak(run, asked.analysis().loss);
+}
+
+double single_impact_advantage(const Asked& asked, const Run& run) {
+  const AnalysisOptions& analysis = asked.analysis();
+  const auto window = longest_window(regular_windows(run, analysis.regimes), 1);
+  if (!window) return std::nan("");
+  return highest(loss_curve(run, LossOrdinate::eta, analysis.loss, 0, window->upper)).second /
+         highest(loss_curve(run, LossOrdinate::eta, analysis.loss, window->upper)).second;
+}
+
+std::vector<double> edges_of(const Asked& asked) {
+  return descending_amplitudes(asked.number("to"), asked.number("from"), set_bins_in_decade);
+}
+
+// Returns the greatest mean loss factor between the amplitudes divided by the least.
+double loss_ratio(const Asked& asked) {
+  const std::vector<double> losses = losses_between(asked.ensemble(), edges_of(asked)).mean;
+  const auto [least, greatest] = std::ranges::minmax(losses);
+  return greatest / least;
+}
+double loss_variation_percent(const Asked& asked) {
+  const double ratio = loss_ratio(asked);
+  return 100 * (ratio - 1) / (ratio + 1);
+}
+
+// Returns the ratio of the ends of the widest range of amplitudes in which every loss factor lies within the
+// share `within` of the middle between the greatest and the least.
+double alike_range(const Asked& asked) {
+  const std::vector<double> edges = edges_of(asked), losses = losses_between(asked.ensemble(), edges).mean;
+  const double share = asked.number("within"), most = (1 + share) / (1 - share);
+  double widest = 1;
+  for (std::size_t first = 0; first < losses.size(); ++first) {
+    double least = losses[first], greatest = losses[first];
+    for (std::size_t k = first; k < losses.size(); ++k) {
+      least = std::min(least, losses[k]);
+      greatest = std::max(greatest, losses[k]);
+      if (!(greatest <= most * least)) break;
+      widest = std::max(widest, edges[first] / edges[k + 1]);
     }
-    return added / expected - 1;
-  });
+  }
+  return widest;
 }
 
-Spread tail_loss_ratio(Runs& runs, const MeasureCall& call) {
-  return over_members(runs, call, [&](const Run& run) {
-    const Curve all = loss_curve(run, LossOrdinate::eta, runs.analysis().loss);
-    const std::size_t count = std::min(all.y.size(), static_cast<std::size_t>(number(call, "last")));
-    const std::vector<double> tail(all.y.end() - static_cast<std::ptrdiff_t>(count), all.y.end());
-    return spread_of(tail).median / highest(all).second;
-  });
-}
-
-Spread smoothing_ratio(Runs& runs, const MeasureCall& call) {
-  return over_members(runs, call, [&](const Run& run) {
-    const auto top = [&](const LossFactorOptions& fit) {
-      return highest(loss_curve(run, LossOrdinate::eta, fit)).second;
-    };
-    return top(runs.analysis().smoother_loss) / top(runs.analysis().loss);
-  });
-}
-
-// Width of the peak of eta: ln of the ratio of the amplitudes around it at half its height.
-Spread smoothing_width_ratio(Runs& runs, const MeasureCall& call) {
-  return over_members(runs, call, [&](const Run& run) {
-    const auto width = [&](const LossFactorOptions& fit) {
-      const Curve curve = loss_curve(run, LossOrdinate::eta, fit);
-      const auto top = std::ranges::max_element(curve.y);
-      if (top == curve.y.end()) return std::nan("");
-      auto first = top, last = top;
-      while (first != curve.y.begin() && *std::prev(first) >= *top / 2) --first;
-      while (std::next(last) != curve.y.end() && *std::next(last) >= *top / 2) ++last;
-      return logarithm(curve.x[static_cast<std::size_t>(first - curve.y.begin())] /
-                       curve.x[static_cast<std::size_t>(last - curve.y.begin())]);
-    };
-    return width(runs.analysis().smoother_loss) / width(runs.analysis().loss);
-  });
-}
-
-Spread single_impact_advantage(Runs& runs, const MeasureCall& call) {
-  return over_members(runs, call, [&](const Run& run) {
-    const AnalysisOptions& analysis = runs.analysis();
-    const auto window = longest_window(regular_windows(run, analysis.regimes), 1);
-    if (!window) return std::nan("");
-    return highest(loss_curve(run, LossOrdinate::eta, analysis.loss, 0, window->upper)).second /
-           highest(loss_curve(run, LossOrdinate::eta, analysis.loss, window->upper)).second;
-  });
+// Returns the difference between the loss factor of several dampers and the sum of theirs, divided by the
+// sum, in the bins between the amplitudes: median, least and greatest.
+Spread from_sum(const Asked& asked) {
+  const std::vector<double> edges = edges_of(asked);
+  const std::vector<Run>& together = asked.ensemble();
+  if (has_one_damper(together.front().scene))
+    throw std::invalid_argument("measure from_sum: run " + asked.call.scenes[0] + " is of one damper");
+  const std::vector<double> losses = losses_between(together, edges).mean,
+                            sum = sum_of_losses(together.front().scene.dampers,
+                                                loss_alone(asked.runs.ensemble(asked.call.scenes[1])), edges);
+  std::vector<double> differences;
+  for (std::size_t k = 0; k < sum.size(); ++k) differences.push_back(losses[k] / sum[k] - 1);
+  return spread_of(differences);
 }
 
 }  // namespace
@@ -317,14 +324,13 @@ std::vector<Measure> loss_measures() {
       {"largest_smoother_loss_amplitude", largest_loss_amplitude<&AnalysisOptions::smoother_loss>,
        "amplitude at which it is met"},
       {"single_impact_fold", single_impact_fold,
-       "amplitude below which single impacts do not exist, closed form for nu -> 0", numbers("restitution"),
-       scenes(0, 0)},
+       "amplitude below which single impacts do not exist, closed form for nu -> 0", numbers("restitution")},
       {"single_impact_peak_loss", single_impact_peak_loss,
        "largest eta of single impacts, closed form for nu -> 0, times nu",
-       numbers("mass_ratio", "restitution"), scenes(0, 0)},
+       numbers("mass_ratio", "restitution")},
       {"single_impact_peak_product", single_impact_peak_product,
        "amplitude of the largest A eta / nu of single impacts, closed form for nu -> 0",
-       numbers("restitution"), scenes(0, 0)},
+       numbers("restitution")},
       {"product_peak_amplitude", product_peak_amplitude,
        "amplitude of the largest A eta_s / nu, A in [from, to], averaged over so many half cycles",
        numbers("from", "to", "averaged_over")},
@@ -360,13 +366,13 @@ std::vector<Measure> loss_measures() {
        "d ln (mean of A eta_s) / d ln nu by least squares over the scenes", numbers("from", "to"),
        scenes(2, 8)},
       {"product_ratio", product_ratio, "mean A eta_s / nu of the first scene, divided by the second's",
-       numbers("from", "to"), scenes(2, 2)},
+       numbers("from", "to")},
       {"loss_ratio_exponent", loss_ratio_exponent,
        "power of the factor that is the ratio of the mean A eta of the first scene to the second's",
-       numbers("factor", "from", "to"), scenes(2, 2)},
+       numbers("factor", "from", "to")},
       {"added_loss_error", added_loss_error,
        "what the averaged eta of the first scene has more than the second's, divided by 2 zeta, less 1",
-       numbers("damping_ratio", "from", "to"), scenes(2, 2)},
+       numbers("damping_ratio", "from", "to")},
       {"tail_loss_ratio", tail_loss_ratio, "median of the last so many values of eta, divided by the largest",
        numbers("last")},
       {"smoothing_ratio", smoothing_ratio,
@@ -377,6 +383,28 @@ std::vector<Measure> loss_measures() {
       {"single_impact_advantage", single_impact_advantage,
        "largest eta in and below the window of single impacts, divided by the largest above it"},
   };
+}
+
+std::vector<Measure> damper_measures() {
+  std::vector<Measure> all{
+      {"loss_ratio", loss_ratio,
+       "greatest loss factor between two amplitudes divided by the least, in bins of a twelfth of a decade",
+       numbers("from", "to"), scenes(1, 1)},
+      {"loss_variation_percent", loss_variation_percent,
+       "half the difference of greatest and least loss factor between two amplitudes, in percent of their "
+       "mean, in bins of a twelfth of a decade",
+       numbers("from", "to"), scenes(1, 1)},
+      {"alike_range", alike_range,
+       "widest range of amplitudes in which the loss factor is constant to a share either way, in bins of a "
+       "twelfth of a decade: its upper end divided by the lower",
+       numbers("from", "to", "within"), scenes(1, 1)},
+      {"from_sum", from_sum,
+       "loss factor of the dampers of the first run less the sum of what each would lose alone, by the "
+       "second run, divided by the sum: median, least and greatest of the bins between two amplitudes",
+       numbers("from", "to"), scenes(2, 2)},
+  };
+  for (Measure& each : all) each.takes_dampers = true;
+  return all;
 }
 
 }  // namespace impact_damper

@@ -1,10 +1,13 @@
-// Measures that compare a run with one of another engine, release or wall, and measures of walls and time
-// steps.
+// Measures that compare a run with one of another engine, release or wall; of walls and time steps, among
+// these of the number that the paper's stuck regime saves; and of errors in the paper's formulas, compared
+// with the model that they describe.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 
-#include "application/reproduction/measures.hpp"
 #include "application/reproduction/measures_parts.hpp"
+#include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/math/elementary.hpp"
@@ -20,36 +23,28 @@ double time_below(const Run& run, double amplitude) {
   return row ? run.half_cycles->peak_time[*row] : std::nan("");
 }
 
-// Applies `find` to each member of the two ensembles of `call`, in pairs.
-template <class Find>
-Spread over_pairs(Runs& runs, const MeasureCall& call, Find find) {
-  return over_groups(runs, call,
-                     [&](const std::vector<const Run*>& pair) { return find(*pair[0], *pair[1]); });
-}
-
-Spread time_saved(Runs& runs, const MeasureCall& call) {
-  const double amplitude = number(call, "amplitude");
-  std::vector<double> theirs;
-  for (const Run& run : runs.ensemble(call.scenes.back())) theirs.push_back(time_below(run, amplitude));
+Spread time_saved(const Asked& asked) {
+  const double amplitude = asked.number("amplitude");
+  std::vector<double> theirs, saved;
+  for (const Run& run : asked.runs.ensemble(asked.call.scenes.back()))
+    theirs.push_back(time_below(run, amplitude));
   const double reference = spread_of(theirs).median;
-  return over_members(runs, call,
-                      [&](const Run& run) { return 100 * (1 - time_below(run, amplitude) / reference); });
+  for (const Run& run : asked.ensemble()) saved.push_back(100 * (1 - time_below(run, amplitude) / reference));
+  return spread_of(saved);
 }
 
-Spread time_ratio(Runs& runs, const MeasureCall& call) {
-  const double amplitude = number(call, "amplitude");
-  return over_pairs(runs, call, [&](const Run& ours, const Run& theirs) {
-    return time_below(ours, amplitude) / time_below(theirs, amplitude);
-  });
+double time_ratio(const Asked& asked, const Run& ours, const Run& theirs) {
+  const double amplitude = asked.number("amplitude");
+  return time_below(ours, amplitude) / time_below(theirs, amplitude);
 }
 
 // Returns the share of the half cycles with an amplitude in [from, to] that belong to no regular window.
-double mixed_share(const Run& run, const RegimeOptions& regimes, double from, double to) {
+double mixed_share(const Asked& asked, const Run& run) {
   const std::vector<double>& amplitude = half_cycles_of(run).amplitude;
-  const std::vector<RegularWindow> windows = regular_windows(run, regimes);
+  const std::vector<RegularWindow> windows = regular_windows(run, asked.analysis().regimes);
   double rows = 0, mixed = 0;
   for (std::size_t row = 1; row < amplitude.size(); ++row) {
-    if (!(amplitude[row] >= from && amplitude[row] <= to)) continue;
+    if (!asked.is_between(amplitude[row])) continue;
     ++rows;
     mixed += std::ranges::none_of(
         windows, [row](const RegularWindow& window) { return window.first <= row && row <= window.last; });
@@ -57,79 +52,62 @@ double mixed_share(const Run& run, const RegimeOptions& regimes, double from, do
   return mixed / rows;
 }
 
-Spread mixed_share_ratio(Runs& runs, const MeasureCall& call) {
-  const double from = number(call, "from"), to = number(call, "to");
-  const RegimeOptions& regimes = runs.analysis().regimes;
-  return over_pairs(runs, call, [&](const Run& ours, const Run& theirs) {
-    return mixed_share(ours, regimes, from, to) / mixed_share(theirs, regimes, from, to);
-  });
+double mixed_share_ratio(const Asked& asked, const Run& ours, const Run& theirs) {
+  return mixed_share(asked, ours) / mixed_share(asked, theirs);
 }
 
-Spread zeta_error(Runs&, const MeasureCall& call) {
-  return once(zeta_m_iterative(number(call, "restitution")).velocity_error);
-}
-Spread zeta_steps(Runs&, const MeasureCall& call) {
-  return once(zeta_m_iterative(number(call, "restitution")).steps);
-}
-Spread zeta_difference(Runs&, const MeasureCall& call) {
-  const double e = number(call, "restitution");
-  return once(std::abs(zeta_m_iterative(e).zeta_m - zeta_m_closed_form(e)));
+double zeta_error(const Asked& asked) { return zeta_m_iterative(asked.number("restitution")).velocity_error; }
+double zeta_steps(const Asked& asked) { return zeta_m_iterative(asked.number("restitution")).steps; }
+double zeta_difference(const Asked& asked) {
+  const double e = asked.number("restitution");
+  return std::abs(zeta_m_iterative(e).zeta_m - zeta_m_closed_form(e));
 }
 
 // Returns a scene with both masses at rest, except for the secondary's unit velocity towards the left wall,
 // half the clearance away.
-Scene single_impact_scene(const MeasureCall& call) {
+Scene single_impact_scene(double mass_ratio, double restitution) {
   Scene scene;
   scene.x0 = 0;
   scene.damper().y0 = 0.5;
   scene.damper().w0 = -1;
-  scene.damper().mass_ratio = number(call, "mass_ratio");
-  scene.damper().restitution = number(call, "restitution");
+  scene.damper().mass_ratio = mass_ratio;
+  scene.damper().restitution = restitution;
   scene.until_time = 1;
   return scene;
 }
 
-Spread wall_restitution(Runs& runs, const MeasureCall& call) {
-  Scene scene = single_impact_scene(call);
-  Record record;
-  record.contacts = true;
-  const Run contact = runs.simulated(scene, Exact{}, record);
-  if (contact.contacts->end.empty()) return once(std::nan(""));
+double wall_restitution(const Asked& asked) {
+  const Scene scene = single_impact_scene(asked.number("mass_ratio"), asked.number("restitution"));
+  const Run contact = asked.runs.simulated(scene, Exact{}, {.contacts = true});
+  if (contact.contacts->end.empty()) return std::nan("");
   const double end = contact.contacts->end.front();
-  record.history = {{end, end + 1e-9, 2}};
-  return once(runs.simulated(scene, Exact{}, record).history->dampers[0].w.back());
+  const Run again =
+      asked.runs.simulated(scene, Exact{}, {.contacts = true, .history = {{end, end + 1e-9, 2}}});
+  return again.history->dampers[0].w.back();
 }
 
-Spread contact_frequency(Runs& runs, const MeasureCall& call) {
-  const Scene scene = single_impact_scene(call);
-  Record record;
-  record.contacts = true;
-  const Contacts contacts = *runs.simulated(scene, Exact{}, record).contacts;
-  if (contacts.end.empty()) return once(std::nan(""));
+double contact_frequency(const Asked& asked) {
+  const Scene scene = single_impact_scene(asked.number("mass_ratio"), asked.number("restitution"));
+  const Contacts contacts = *asked.runs.simulated(scene, Exact{}, {.contacts = true}).contacts;
+  if (contacts.end.empty()) return std::nan("");
   const double duration = contacts.end.front() - contacts.begin.front();
-  return once(half_turn<double>() / duration / std::sqrt(scene.damper().wall_stiffness));
+  return half_turn<double>() / duration / std::sqrt(scene.damper().wall_stiffness);
 }
 
-// Simulates each run again with its own engine, the wall sampled finely through the contact that its fastest
+// Simulates a run again with its own engine, the wall sampled finely through the contact that its fastest
 // impact begins.
-Spread wall_overlap(Runs& runs, const MeasureCall& call) {
-  return over_members(runs, call, [&](const Run& run) {
-    if (!run.impacts) throw std::invalid_argument("impacts: the run did not record them");
-    const std::vector<double>& speed = run.impacts->relative_velocity;
-    if (speed.empty()) return std::nan("");
-    const auto fastest = std::ranges::max_element(
-        speed, [](double one, double other) { return std::abs(one) < std::abs(other); });
-    const double begin = run.impacts->time[static_cast<std::size_t>(fastest - speed.begin())];
-    Scene scene = run.scene;
-    scene.until_amplitude.reset();
-    scene.until_time = begin + nominal_contact_time(scene.damper());
-    Record record;
-    record.history = {{begin, *scene.until_time, 201}};
-    const Run again = runs.simulated(scene, run.engine, record);
-    double overlap = 0;
-    for (const double y : again.history->dampers[0].y) overlap = std::max({overlap, -y, y - 1});
-    return overlap;
-  });
+double wall_overlap(const Asked& asked, const Run& run) {
+  const std::vector<double>& speed = impacts_of(run).relative_velocity;
+  if (speed.empty()) return std::nan("");
+  const auto fastest = std::ranges::max_element(speed, {}, [](double each) { return std::abs(each); });
+  const double begin = run.impacts->time[static_cast<std::size_t>(fastest - speed.begin())];
+  Scene scene = run.scene;
+  scene.until_amplitude.reset();
+  scene.until_time = begin + nominal_contact_time(scene.damper());
+  const Run again = asked.runs.simulated(scene, run.engine, {.history = {{begin, *scene.until_time, 201}}});
+  double overlap = 0;
+  for (const double y : again.history->dampers[0].y) overlap = std::max({overlap, -y, y - 1});
+  return overlap;
 }
 
 // Whether the component element method, in ten thousand steps of length h, keeps the amplitude of a primary
@@ -152,13 +130,13 @@ bool is_stable(const Runs& runs, double h) {
 
 // Returns the largest step that stays bounded, by bisection. The highest mode is the primary mass's, of
 // frequency 1.
-Spread step_limit(Runs& runs, const MeasureCall&) {
+double step_limit(const Asked& asked) {
   double low = 0.5, high = 8;
   while (high - low > 1e-6) {
     const double h = (low + high) / 2;
-    (is_stable(runs, h) ? low : high) = h;
+    (is_stable(asked.runs, h) ? low : high) = h;
   }
-  return once(low);
+  return low;
 }
 
 // Returns the exponent of the time step in the error of the component element method, by least squares. The
@@ -167,30 +145,187 @@ Spread step_limit(Runs& runs, const MeasureCall&) {
 // because it depends on where impacts happen to fall in a step; over 32 steps and a factor of 16 the exponent
 // has a standard error of 0.2.
 template <bool locate>
-Spread step_order(Runs& runs, const MeasureCall& call) {
-  Scene scene = runs.file(call.scenes.front()).scene;
+double step_order(const Asked& asked) {
+  Scene scene = asked.file().scene;
   scene.until_time = 30;
   scene.until_amplitude.reset();
-  const Run exact = runs.simulated(scene, Exact{}, Record{});
+  const Run exact = asked.runs.simulated(scene, Exact{}, Record{});
   const auto error = [&](double step) {
     Cem cem;
     cem.time_step = step;
     cem.locate = locate;
-    const Run run = runs.simulated(scene, cem, Record{});
+    const Run run = asked.runs.simulated(scene, cem, Record{});
     double sum = 0;
     const std::size_t rows = std::min(run.half_cycles->amplitude.size(), exact.half_cycles->amplitude.size());
     for (std::size_t row = 0; row < rows; ++row)
       sum += std::abs(run.half_cycles->amplitude[row] - exact.half_cycles->amplitude[row]);
     return sum;
   };
-  const double coarse = nominal_contact_time(scene.damper()) / number(call, "steps_per_contact");
+  const double coarse = nominal_contact_time(scene.damper()) / asked.number("steps_per_contact");
   constexpr int steps = 32;
   Curve errors;
   for (int i = 0; i < steps; ++i) {
-    errors.x.push_back(coarse * exponential(-logarithm(number(call, "factor")) * i / (steps - 1)));
-    errors.y.push_back(error(errors.x.back()));
+    const double step = coarse * exponential(-logarithm(asked.number("factor")) * i / (steps - 1));
+    errors.add(step, error(step));
   }
-  return once(log_slope(errors));
+  return log_slope(errors);
+}
+
+// Returns the component element method with small steps only near contact, and touch and release located. Its
+// own error, 1e-5 of the time of a decay, is below what the regime changes. The catalogue's further runs by
+// this method have the same options.
+Cem located_method(std::optional<double> stuck_speed) {
+  Cem engine;
+  engine.locate = true;
+  engine.large_step = 0.02;
+  engine.stuck_speed = stuck_speed;
+  return engine;
+}
+
+// Returns the least budget of steps that a run does not exhaust.
+double steps_of(const Scene& scene, Cem engine) {
+  std::int64_t least = 0, most = engine.max_steps;
+  while (most - least > 1) {
+    engine.max_steps = least + (most - least) / 2;
+    const bool enough = simulate(scene, engine, Record{}).stop_reason != StopReason::step_budget;
+    (enough ? most : least) = engine.max_steps;
+  }
+  return static_cast<double>(most);
+}
+// Returns the steps that the paper's stuck regime saves in the decay of the scene.
+double stuck_regime_steps_percent(const Asked& asked) {
+  Scene scene = asked.file().scene;
+  scene.until_time.reset();
+  scene.until_amplitude = asked.number("amplitude");
+  return 100 * (1 - steps_of(scene, located_method(asked.number("stuck_speed"))) /
+                        steps_of(scene, located_method({})));
+}
+
+// Returns the decay of a viscous oscillator: the secondary mass stays at rest, out of reach of walls that
+// move by less than half the clearance.
+HalfCycles viscous_decay(const Asked& asked) {
+  Scene scene;
+  scene.damping_ratio = asked.number("damping_ratio");
+  scene.x0 = 0.4;
+  scene.damper().y0 = 0.1;
+  scene.until_time = 200;
+  return *asked.runs.simulated(scene, Exact{}, Record{}).half_cycles;
+}
+
+double viscous_loss(const Asked& asked) {
+  return spread_of(averaged_loss_factor(viscous_decay(asked), asked.analysis().loss).eta).median /
+         (2 * asked.number("damping_ratio"));
+}
+
+double viscous_loss_per_cycle(const Asked& asked) {
+  const std::vector<double> x = viscous_decay(asked).amplitude;
+  return 2 * (x.at(3) - x.at(5)) / x.at(4) / (2 * asked.number("damping_ratio"));
+}
+
+// Returns the change of an energy, in percent, from the release to until_time. Nothing is lost before a wall
+// is met; throws std::invalid_argument if one is.
+template <double (*of)(const Energy&)>
+double flight_energy_drift(const Asked& asked) {
+  Scene scene;
+  scene.x0 = asked.number("x0");
+  scene.until_time = asked.number("until_time");
+  const Run run = asked.runs.simulated(scene, Exact{}, {.impacts = true, .energy = true});
+  if (!run.impacts->time.empty()) throw std::invalid_argument("until_time: a wall was met before it");
+  return 100 * std::abs(of(run.energy->final) / of(run.energy->initial) - 1);
+}
+double paper_energy(const Energy& energy) { return energy.paper; }
+double total_energy(const Energy& energy) { return energy.total(); }
+
+// Returns how much energy, in percent, is missing halfway through a lossless impact.
+template <bool with_wall>
+double missing_impact_energy(const Asked& asked) {
+  Scene scene = single_impact_scene(asked.number("mass_ratio"), 1);
+  scene.until_time = 0.5 + nominal_contact_time(scene.damper()) / 2;
+  const EnergyBalance balance = *asked.runs.simulated(scene, Exact{}, {.energy = true}).energy;
+  const double kept = balance.final.kinetic + balance.final.spring + (with_wall ? balance.final.wall : 0);
+  return 100 * (1 - kept / balance.initial.total());
+}
+
+// Simulates a forced scene with e = 0, a heavy secondary mass and compliant walls, finely sampled. The engine
+// has no stuck motion: a mass that sticks is in sustained contact and obeys the equations of contact.
+Run stuck_run(const Asked& asked) {
+  Scene scene;
+  scene.damper().mass_ratio = asked.number("mass_ratio");
+  scene.damper().restitution = 0;
+  scene.damper().wall_stiffness = 1e6;
+  scene.x0 = 6;
+  scene.force_amplitude = 2;
+  scene.force_frequency = 0.4;
+  scene.until_time = 20;
+  return asked.runs.simulated(scene, Exact{}, {.contacts = true, .history = {{0, 20, 20001}}});
+}
+
+// Visits every sample of the contacts after the wall's own motion, which decays as exp(-sqrt(k/nu) t), has
+// died away.
+template <class Visit>
+void for_each_stuck_sample(const Run& run, Visit visit) {
+  const std::vector<double>& time = run.history->time;
+  for (std::size_t i = 1; i + 1 < time.size(); ++i)
+    for (std::size_t c = 0; c < run.contacts->begin.size(); ++c)
+      if (time[i - 1] > run.contacts->begin[c] + 0.2 && time[i + 1] < run.contacts->end[c]) visit(i, c);
+}
+
+// Returns the coefficient in x'' + restoring = coefficient driving of the stuck motion, by least squares;
+// both terms are functions of a sample.
+template <class Restoring, class Driving>
+double stuck_coefficient(const Run& run, Restoring restoring, Driving driving) {
+  const History& h = *run.history;
+  double products = 0, squares = 0;
+  for_each_stuck_sample(run, [&](std::size_t i, std::size_t) {
+    const double acceleration = (h.v[i + 1] - h.v[i - 1]) / (h.time[i + 1] - h.time[i - 1]);
+    products += driving(i) * (acceleration + restoring(i));
+    squares += driving(i) * driving(i);
+  });
+  return products / squares;
+}
+
+// Returns the coefficient of the force in x'' + x/(1 + nu) = coefficient f0 sin(omega_f t).
+double stuck_forcing(const Asked& asked) {
+  const Run run = stuck_run(asked);
+  const History& h = *run.history;
+  return stuck_coefficient(
+      run, [&](std::size_t i) { return h.x[i] / (1 + run.scene.damper().mass_ratio); },
+      [&](std::size_t i) {
+        return run.scene.force_amplitude * sin_cos(run.scene.force_frequency * h.time[i]).sin;
+      });
+}
+
+// Returns zeta_s/zeta of the paper's (9) (M9.6, M9.7), minus the coefficient of 2 omega_s zeta x' in the stuck
+// motion: a mass at rest against its wall moves with it, in a sustained contact.
+double stuck_damping(const Asked& asked) {
+  Scene scene;
+  scene.damper().mass_ratio = asked.number("mass_ratio");
+  scene.damping_ratio = asked.number("damping_ratio");
+  scene.damper().restitution = 0;
+  scene.damper().wall_stiffness = 1e6;
+  scene.x0 = -6;
+  scene.until_time = 1;
+  const Run run = simulate(scene, Exact{}, {.contacts = true, .history = {{0, 1, 1001}}});
+  const History& h = *run.history;
+  const double omega_s = 1 / std::sqrt(1 + scene.damper().mass_ratio);
+  return -stuck_coefficient(
+      run, [&](std::size_t i) { return omega_s * omega_s * h.x[i]; },
+      [&](std::size_t i) { return 2 * scene.damping_ratio * omega_s * h.v[i]; });
+}
+
+// Returns how far the stuck mass moves from its wall, divided by how far y'' = -x'' would move it.
+double stuck_drift(const Asked& asked) {
+  const Run run = stuck_run(asked);
+  const History& h = *run.history;
+  const std::vector<double>& y = h.dampers[0].y;
+  double moved = 0, predicted = 0;
+  std::size_t contact = run.contacts->begin.size(), begin = 0;
+  for_each_stuck_sample(run, [&](std::size_t i, std::size_t c) {
+    if (c != contact) contact = c, begin = i;
+    moved = std::max(moved, std::abs(y[i] - y[begin]));
+    predicted = std::max(predicted, std::abs(h.x[i] - h.x[begin] - h.v[begin] * (h.time[i] - h.time[begin])));
+  });
+  return moved / predicted;
 }
 
 }  // namespace
@@ -199,34 +334,58 @@ std::vector<Measure> model_measures() {
   return {
       {"mixed_share_ratio", mixed_share_ratio,
        "share of the half cycles that belong to no regular window, divided by the second run's",
-       numbers("from", "to"), scenes(2, 2)},
+       numbers("from", "to")},
       {"time_saved_percent", time_saved,
        "by how much the first run reaches an amplitude before the second, in percent of the time",
        numbers("amplitude"), scenes(2, 2)},
       {"time_ratio", time_ratio, "time down to an amplitude, divided by the second run's",
-       numbers("amplitude"), scenes(2, 2)},
-      {"zeta_error", zeta_error, "velocity error of the iterative zeta_m", numbers("restitution"),
-       scenes(0, 0)},
-      {"zeta_steps", zeta_steps, "steps of the iterative zeta_m through one impact", numbers("restitution"),
-       scenes(0, 0)},
+       numbers("amplitude")},
+      {"zeta_error", zeta_error, "velocity error of the iterative zeta_m", numbers("restitution")},
+      {"zeta_steps", zeta_steps, "steps of the iterative zeta_m through one impact", numbers("restitution")},
       {"zeta_difference", zeta_difference, "iterative zeta_m less the closed form, absolute",
-       numbers("restitution"), scenes(0, 0)},
+       numbers("restitution")},
       {"wall_restitution", wall_restitution,
        "relative speed after one impact of the exact engine, divided by that before",
-       numbers("mass_ratio", "restitution"), scenes(0, 0)},
+       numbers("mass_ratio", "restitution")},
       {"contact_frequency", contact_frequency,
        "frequency of one contact of the exact engine, divided by the root of k",
-       numbers("mass_ratio", "restitution"), scenes(0, 0)},
+       numbers("mass_ratio", "restitution")},
       {"wall_overlap", wall_overlap, "largest deformation of the wall, in units of the clearance"},
       {"step_limit", step_limit,
-       "largest omega h at which the component element method stays bounded, undamped, by trial", numbers(),
-       scenes(0, 0)},
+       "largest omega h at which the component element method stays bounded, undamped, by trial"},
       {"step_order", step_order<false>,
        "power of the time step as which the error of the component element method falls, down to a step "
        "smaller by a factor",
-       numbers("steps_per_contact", "factor")},
+       numbers("steps_per_contact", "factor"), scenes(1, 1)},
       {"step_order_located", step_order<true>, "the same with touch and release located inside the step",
-       numbers("steps_per_contact", "factor")},
+       numbers("steps_per_contact", "factor"), scenes(1, 1)},
+      {"stuck_regime_steps_percent", stuck_regime_steps_percent,
+       "steps of the component element method that the paper's stuck regime saves, down to an amplitude, in "
+       "percent",
+       numbers("stuck_speed", "amplitude"), scenes(1, 1)},
+      {"viscous_loss", viscous_loss, "averaged loss factor of viscous damping alone, divided by 2 zeta",
+       numbers("damping_ratio")},
+      {"viscous_loss_per_cycle", viscous_loss_per_cycle,
+       "2 dx/x over one cycle of viscous damping alone, divided by 2 zeta", numbers("damping_ratio")},
+      {"paper_energy_drift_percent", flight_energy_drift<paper_energy>,
+       "change of the paper's energy in a free flight, in percent", numbers("x0", "until_time")},
+      {"energy_drift_percent", flight_energy_drift<total_energy>,
+       "change of kinetic plus spring energy with the cross term in it, in percent",
+       numbers("x0", "until_time")},
+      {"impact_energy_without_wall_percent", missing_impact_energy<false>,
+       "energy missing halfway through a lossless impact if the wall's is left out, in percent",
+       numbers("mass_ratio")},
+      {"impact_energy_with_wall_percent", missing_impact_energy<true>,
+       "energy missing there with the wall's counted, in percent", numbers("mass_ratio")},
+      {"stuck_forcing", stuck_forcing,
+       "coefficient of the force in the stuck motion, x'' + x/(1 + nu) = coefficient f0 sin(omega_f t)",
+       numbers("mass_ratio")},
+      {"stuck_damping", stuck_damping,
+       "zeta_s by zeta in the stuck motion, x'' + 2 omega_s zeta_s x' + omega_s^2 x = 0",
+       numbers("mass_ratio", "damping_ratio")},
+      {"stuck_drift", stuck_drift,
+       "how far a stuck mass leaves its wall, divided by how far y'' = -x'' would carry it",
+       numbers("mass_ratio")},
   };
 }
 

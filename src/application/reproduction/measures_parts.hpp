@@ -1,6 +1,7 @@
 // Functions that the measures_*.cpp share.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <stdexcept>
@@ -8,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "application/reproduction/claims.hpp"
+#include "application/reproduction/curve.hpp"
 #include "application/reproduction/measures.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/run.hpp"
@@ -26,39 +27,39 @@ constexpr Count responses(std::size_t least, std::size_t most) { return {least, 
 
 inline constexpr double everywhere = std::numeric_limits<double>::infinity();
 
-struct Curve {
-  std::vector<double> x, y;
-};
-
 // Returns one ordinate over the fitted amplitude, in the order of time, where the amplitude lies in [from,
 // to]. The first point is left out by default: row 0, which ran from the release and is less than a half
 // cycle, is among the peaks that it is fitted to.
 enum class FirstPoint { left_out, counted };
 Curve loss_curve(const Run& run, LossOrdinate which, const LossFactorOptions& fit, double from = 0,
                  double to = everywhere, FirstPoint first = FirstPoint::left_out);
+// Returns it by the averaging of the analysis, where the call asks for it: in its [from, to].
+Curve loss_curve(const Asked& asked, const Run& run, LossOrdinate which,
+                 FirstPoint first = FirstPoint::left_out);
 
-// Returns the slope of ln y against ln x by least squares.
-double log_slope(const Curve& curve);
+// Return the slope of y against x, and of ln y against ln x, by least squares.
+double slope(const Curve& curve);
+double log_slope(Curve curve);
 
-// Returns the mean ordinate of each curve, for each of the bins that all of them reach.
+// Returns the mean ordinate of each curve, for each of the bins that all of them reach. The bins are equal in
+// ln x on [from, to].
 std::vector<std::vector<double>> bin_means(const std::vector<Curve>& curves, double from, double to,
                                            int bins);
-// Returns how far curves lie apart at equal x: the largest minus the least of their bin means divided by the
-// mean of these, in percent, for each of the bins that all of them reach. The bins are equal in ln x on
-// [from, to].
+// Return how far curves lie apart at equal x: the largest minus the least of their bin means divided by the
+// mean of these, in percent, as the mean over the bins, and in the bin where it is largest. NaN without bins.
 inline constexpr int default_bins = AnalysisOptions{}.bins;
-std::vector<double> bin_spreads_percent(const std::vector<Curve>& curves, double from, double to,
-                                        int bins = default_bins);
-// Return the mean, and the largest, of these. NaN if there is none.
 double spread_percent(const std::vector<Curve>& curves, double from, double to, int bins = default_bins);
 double worst_spread_percent(const std::vector<Curve>& curves, double from, double to,
                             int bins = default_bins);
 
-// Returns NaN for an empty list.
+// Return the mean, and the largest, of these. NaN if there is none.
 inline double mean(const std::vector<double>& values) {
   double sum = 0;
   for (const double value : values) sum += value;
   return sum / static_cast<double>(values.size());
+}
+inline double most(const std::vector<double>& values) {
+  return values.empty() ? std::numeric_limits<double>::quiet_NaN() : *std::ranges::max_element(values);
 }
 
 inline const HalfCycles& half_cycles_of(const Run& run) {
@@ -66,11 +67,16 @@ inline const HalfCycles& half_cycles_of(const Run& run) {
   return *run.half_cycles;
 }
 
-inline double number(const MeasureCall& call, const std::string& name) {
-  const auto found = call.numbers.find(name);
-  if (found == call.numbers.end())
-    throw std::invalid_argument("measure " + call.name + ": " + name + " is missing");
-  return found->second;
+inline const Impacts& impacts_of(const Run& run) {
+  if (!run.impacts) throw std::invalid_argument("impacts: the run did not record them");
+  return *run.impacts;
 }
+
+// The parts of the table, by subject.
+std::vector<Measure> loss_measures();    // loss factor curves
+std::vector<Measure> damper_measures();  // several dampers
+std::vector<Measure> regime_measures();  // bounce-down, windows, impact failure, phases
+std::vector<Measure> model_measures();   // engine against engine, wall and time step, the paper's slips
+std::vector<Measure> steady_measures();  // steady motions under a force
 
 }  // namespace impact_damper

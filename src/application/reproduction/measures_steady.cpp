@@ -9,8 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "application/reproduction/largest_amplitude.hpp"
-#include "application/reproduction/measures.hpp"
+#include "application/reproduction/curve.hpp"
 #include "application/reproduction/measures_parts.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/orbits/two_impact_orbit.hpp"
@@ -23,8 +22,8 @@ constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 // Returns the response of that name. Throws std::invalid_argument if it is of another kind.
 template <class Kind>
-const Kind& response_of(Runs& runs, const std::string& name) {
-  const auto* const found = std::get_if<Kind>(&runs.response(name));
+const Kind& response_of(const Asked& asked, const std::string& name) {
+  const auto* const found = std::get_if<Kind>(&asked.runs.response(name));
   if (!found) throw std::invalid_argument(name + ": must be a " + std::string(Kind::kind));
   return *found;
 }
@@ -35,10 +34,10 @@ constexpr SweepWay rising = &Sweep::up, falling = &Sweep::down;
 
 // Returns the sweeps of a call. Throws std::invalid_argument unless all responses have equally many, each
 // from its own start.
-std::vector<const SweepResponse*> sweeps_of(Runs& runs, const MeasureCall& call) {
+std::vector<const SweepResponse*> sweeps_of(const Asked& asked) {
   std::vector<const SweepResponse*> responses;
-  for (const std::string& name : call.responses) {
-    responses.push_back(&response_of<SweepResponse>(runs, name));
+  for (const std::string& name : asked.call.responses) {
+    responses.push_back(&response_of<SweepResponse>(asked, name));
     if (responses.back()->sweeps.size() != responses.front()->sweeps.size())
       throw std::invalid_argument(name + ": must have as many starts as all responses of the measure");
   }
@@ -47,28 +46,20 @@ std::vector<const SweepResponse*> sweeps_of(Runs& runs, const MeasureCall& call)
 
 // Returns, for each start, the largest amplitude at each force of the sweeps. Throws std::invalid_argument if
 // they are not over the same forces.
-std::vector<Curve> largest_amplitudes(Runs& runs, const MeasureCall& call, SweepWay way) {
-  const std::vector<const SweepResponse*> responses = sweeps_of(runs, call);
-  const std::vector<double> forces = responses.front()->axis.values();
+std::vector<Curve> largest_amplitudes(const Asked& asked, SweepWay way) {
+  const std::vector<const SweepResponse*> responses = sweeps_of(asked);
   for (std::size_t i = 0; i < responses.size(); ++i)
-    if (!responses[i]->axis.number.is(&Scene::force_amplitude) || responses[i]->axis.values() != forces)
-      throw std::invalid_argument(call.responses[i] +
+    if (!responses[i]->axis.number.is(&Scene::force_amplitude) ||
+        responses[i]->axis.values() != responses.front()->axis.values())
+      throw std::invalid_argument(asked.call.responses[i] +
                                   ": must be over the same forces as all responses of the measure");
-  std::vector<Curve> curves;
-  for (std::size_t n = 0; n < responses.front()->sweeps.size(); ++n) {
-    Curve& curve = curves.emplace_back();
-    curve.x = forces;
-    for (std::size_t i = 0; i < forces.size(); ++i)
-      curve.y.push_back(largest_amplitude(responses, n, way, i));
-  }
-  return curves;
+  return largest_amplitudes(responses, way);
 }
 
 // Returns F over A (M14.7) from the amplitude of the largest F downwards, in the order of time; A in [from,
 // to].
-Curve needed_force(const Runs& runs, const Run& run, const MeasureCall& call) {
-  Curve curve =
-      loss_curve(run, LossOrdinate::eta, runs.analysis().loss, number(call, "from"), number(call, "to"));
+Curve needed_force(const Asked& asked, const Run& run) {
+  Curve curve = loss_curve(asked, run, LossOrdinate::eta);
   const double carried = square_root(1 + run.scene.damper().mass_ratio);
   for (std::size_t i = 0; i < curve.x.size(); ++i) curve.y[i] *= carried * curve.x[i];
   const auto top = std::ranges::max_element(curve.y) - curve.y.begin();
@@ -79,12 +70,11 @@ Curve needed_force(const Runs& runs, const Run& run, const MeasureCall& call) {
 
 // Applies find(amplitudes, needed) for each start of the sweeps to each member of the decay's ensemble.
 template <class Find>
-Spread over_starts(Runs& runs, const MeasureCall& call, SweepWay way, Find find) {
+Spread over_starts(const Asked& asked, SweepWay way, Find find) {
   std::vector<Curve> needed;
-  for (const Run& decay : runs.ensemble(call.scenes.front()))
-    needed.push_back(needed_force(runs, decay, call));
+  for (const Run& decay : asked.ensemble()) needed.push_back(needed_force(asked, decay));
   std::vector<double> values;
-  for (const Curve& found : largest_amplitudes(runs, call, way))
+  for (const Curve& found : largest_amplitudes(asked, way))
     for (const Curve& by_decay : needed) values.push_back(find(found, by_decay));
   return spread_of(values);
 }
@@ -100,13 +90,9 @@ double predicted_amplitude(const Curve& needed, double force) {
   return no_number;
 }
 
-double most(const std::vector<double>& values) {
-  return values.empty() ? no_number : *std::ranges::max_element(values);
-}
-
 template <SweepWay way, double (*of_all)(const std::vector<double>&)>
-Spread amplitude_error_percent(Runs& runs, const MeasureCall& call) {
-  return over_starts(runs, call, way, [](const Curve& found, const Curve& needed) {
+Spread amplitude_error_percent(const Asked& asked) {
+  return over_starts(asked, way, [](const Curve& found, const Curve& needed) {
     std::vector<double> errors;
     for (std::size_t i = 0; i < found.x.size(); ++i) {
       const double predicted = predicted_amplitude(needed, found.x[i]);
@@ -116,8 +102,8 @@ Spread amplitude_error_percent(Runs& runs, const MeasureCall& call) {
   });
 }
 
-Spread force_limit_ratio(Runs& runs, const MeasureCall& call) {
-  return over_starts(runs, call, rising, [](const Curve& found, const Curve& needed) {
+Spread force_limit_ratio(const Asked& asked) {
+  return over_starts(asked, rising, [](const Curve& found, const Curve& needed) {
     if (needed.x.empty()) return no_number;
     for (std::size_t i = 0; i + 1 < found.x.size(); ++i) {
       if (!(found.y[i] <= needed.x[0] && found.y[i + 1] > needed.x[0])) continue;
@@ -128,9 +114,9 @@ Spread force_limit_ratio(Runs& runs, const MeasureCall& call) {
   });
 }
 
-Spread jump_ratio(Runs& runs, const MeasureCall& call) {
+Spread jump_ratio(const Asked& asked) {
   constexpr double half_of_the_clearance = 0.5;
-  return over_starts(runs, call, falling, [](const Curve& found, const Curve& needed) {
+  return over_starts(asked, falling, [](const Curve& found, const Curve& needed) {
     std::size_t least = found.x.size();  // index of the least force from which on that holds
     while (least > 0 && found.y[least - 1] >= half_of_the_clearance) --least;
     if (needed.y.empty() || least == 0 || least == found.x.size()) return no_number;
@@ -145,8 +131,8 @@ void for_each_value(const Sweep& sweep, Visit visit) {
     visit(static_cast<std::int64_t>(i), sweep.up[i], sweep.down[i]);
 }
 
-Spread one_motion_share(Runs& runs, const MeasureCall& call) {
-  const std::vector<const SweepResponse*> responses = sweeps_of(runs, call);
+Spread one_motion_share(const Asked& asked) {
+  const std::vector<const SweepResponse*> responses = sweeps_of(asked);
   std::vector<double> shares;
   for (std::size_t n = 0; n < responses.front()->sweeps.size(); ++n) {
     std::vector<double> same;
@@ -176,16 +162,16 @@ TwoImpactPoints two_impact_points(const Basin& basin) {
   return points;
 }
 
-Spread two_impact_share(Runs& runs, const MeasureCall& call) {
-  const Basin& basin = response_of<BasinResponse>(runs, call.responses.front()).basin;
-  return spread_of({static_cast<double>(two_impact_points(basin).symmetric) /
-                    static_cast<double>(basin.attractor.size())});
+double two_impact_share(const Asked& asked) {
+  const Basin& basin = response_of<BasinResponse>(asked, asked.call.responses.front()).basin;
+  return static_cast<double>(two_impact_points(basin).symmetric) /
+         static_cast<double>(basin.attractor.size());
 }
 
-Spread equally_spaced_share(Runs& runs, const MeasureCall& call) {
+double equally_spaced_share(const Asked& asked) {
   const TwoImpactPoints points =
-      two_impact_points(response_of<BasinResponse>(runs, call.responses.front()).basin);
-  return spread_of({static_cast<double>(points.symmetric) / static_cast<double>(points.all)});
+      two_impact_points(response_of<BasinResponse>(asked, asked.call.responses.front()).basin);
+  return static_cast<double>(points.symmetric) / static_cast<double>(points.all);
 }
 
 // Returns the relative difference of the power lost in impacts from that of the closed form, of whose two
@@ -201,10 +187,10 @@ double power_error(const Scene& scene, double impact_power) {
   return least;
 }
 
-Spread two_impact_error(Runs& runs, const MeasureCall& call) {
+double two_impact_error(const Asked& asked) {
   std::vector<double> errors;
-  for (const std::string& name : call.responses) {
-    const auto& response = response_of<SweepResponse>(runs, name);
+  for (const std::string& name : asked.call.responses) {
+    const auto& response = response_of<SweepResponse>(asked, name);
     const auto add = [&](std::int64_t i, const SteadyState& up, const SteadyState& down) {
       const Scene scene = response.axis.at(response.scene, i);
       // The closed form uses the linear response, which does not exist at resonance without damping.
@@ -215,7 +201,7 @@ Spread two_impact_error(Runs& runs, const MeasureCall& call) {
     };
     for (const Sweep& sweep : response.sweeps) for_each_value(sweep, add);
   }
-  return spread_of({most(errors)});
+  return most(errors);
 }
 
 }  // namespace

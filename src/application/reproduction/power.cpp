@@ -6,7 +6,9 @@
 #include <cmath>
 #include <exception>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
+#include <variant>
 
 #include "impact_damper/analysis/parallel.hpp"
 #include "impact_damper/base/number_text.hpp"
@@ -115,53 +117,53 @@ struct Settings {
   EnsembleOptions ensemble;
   AnalysisOptions analysis;
 };
+using SettingsNumber = std::variant<int*, std::int64_t*, double*>;
 struct AnalysisNumber {
   std::string_view name;
-  double (*get)(const Settings&);
-  void (*set)(Settings&, double);
+  SettingsNumber (*in)(Settings&);
   double least, most,
       step;  // whole numbers in steps of this; 0: any number, by changes from 0.001 to 1000
   std::string_view noticed_by;
+
+  double of(Settings settings) const {
+    return std::visit([](const auto* number) { return double(*number); }, in(settings));
+  }
+  void set(Settings& settings, double value) const {
+    std::visit([&](auto* number) { *number = static_cast<std::decay_t<decltype(*number)>>(value); },
+               in(settings));
+  }
 };
-const std::vector<AnalysisNumber>& analysis_numbers() {
-  static const std::vector<AnalysisNumber> table{
-      {"averaged_over", [](const Settings& s) { return double(s.analysis.loss.half_cycles); },
-       [](Settings& s, double value) { s.analysis.loss.half_cycles = int(value); }, 10, 18, 2,
-       "measures_of_runs: measures of the loss factor are what they are for amplitudes that fall evenly"},
-      {"smoothed_over", [](const Settings& s) { return double(s.analysis.smoother_loss.half_cycles); },
-       [](Settings& s, double value) { s.analysis.smoother_loss.half_cycles = int(value); }, 10, 18, 2,
-       "measures_of_runs: measures of the loss factor are what they are for amplitudes that fall evenly"},
-      {"bins", [](const Settings& s) { return double(s.analysis.bins); },
-       [](Settings& s, double value) { s.analysis.bins = int(value); }, 1, 48, 1,
-       "measures: the spread is averaged over twelve bins, equal in the logarithm"},
-      {"stuck_contact_times", [](const Settings& s) { return s.analysis.regimes.stuck_contact_times; },
-       [](Settings& s, double value) { s.analysis.regimes.stuck_contact_times = value; }, 0, 0, 0,
-       "regimes: a compliant contact is stuck once it outlasts a full period, a rigid one always"},
-      {"bounce_down_half_cycles",
-       [](const Settings& s) { return double(s.analysis.regimes.bounce_down_half_cycles); },
-       [](Settings& s, double value) { s.analysis.regimes.bounce_down_half_cycles = std::int64_t(value); }, 1,
-       16, 1, "regimes: bounce-down ends with the first unbroken series of stuck half cycles"},
-      {"window_half_cycles", [](const Settings& s) { return double(s.analysis.regimes.window_half_cycles); },
-       [](Settings& s, double value) { s.analysis.regimes.window_half_cycles = std::int64_t(value); }, 1, 32,
-       1, "regimes: regular windows are maximal series of equal counts"},
-      {"failure_half_cycles",
-       [](const Settings& s) { return double(s.analysis.regimes.failure_half_cycles); },
-       [](Settings& s, double value) { s.analysis.regimes.failure_half_cycles = std::int64_t(value); }, 1, 12,
-       1, "regimes: impact failure is for good where no three half cycles bring three impacts any more"},
-      {"members", [](const Settings& s) { return double(s.ensemble.members); },
-       [](Settings& s, double value) { s.ensemble.members = std::int64_t(value); }, 1, 64, 1, from_reference},
-      {"ensemble_step", [](const Settings& s) { return s.ensemble.step; },
-       [](Settings& s, double value) { s.ensemble.step = value; }, 0, 0, 0, from_reference},
-  };
-  return table;
-}
+constexpr std::string_view falls_evenly =
+    "measures_of_runs: measures of the loss factor are what they are for amplitudes that fall evenly";
+constexpr std::array<AnalysisNumber, 9> analysis_numbers{
+    {{"averaged_over", [](Settings& s) -> SettingsNumber { return &s.analysis.loss.half_cycles; }, 10, 18, 2,
+      falls_evenly},
+     {"smoothed_over", [](Settings& s) -> SettingsNumber { return &s.analysis.smoother_loss.half_cycles; },
+      10, 18, 2, falls_evenly},
+     {"bins", [](Settings& s) -> SettingsNumber { return &s.analysis.bins; }, 1, 48, 1,
+      "measures: the spread is averaged over twelve bins, equal in the logarithm"},
+     {"stuck_contact_times",
+      [](Settings& s) -> SettingsNumber { return &s.analysis.regimes.stuck_contact_times; }, 0, 0, 0,
+      "regimes: a compliant contact is stuck once it outlasts a full period, a rigid one always"},
+     {"bounce_down_half_cycles",
+      [](Settings& s) -> SettingsNumber { return &s.analysis.regimes.bounce_down_half_cycles; }, 1, 16, 1,
+      "regimes: bounce-down ends with the first unbroken series of stuck half cycles"},
+     {"window_half_cycles",
+      [](Settings& s) -> SettingsNumber { return &s.analysis.regimes.window_half_cycles; }, 1, 32, 1,
+      "regimes: regular windows are maximal series of equal counts"},
+     {"failure_half_cycles",
+      [](Settings& s) -> SettingsNumber { return &s.analysis.regimes.failure_half_cycles; }, 1, 12, 1,
+      "regimes: impact failure is for good where no three half cycles bring three impacts any more"},
+     {"members", [](Settings& s) -> SettingsNumber { return &s.ensemble.members; }, 1, 64, 1, from_reference},
+     {"ensemble_step", [](Settings& s) -> SettingsNumber { return &s.ensemble.step; }, 0, 0, 0,
+      from_reference}}};
 
 std::vector<PowerNumber> numbers_of(const Settings& settings) {
   std::vector<PowerNumber> numbers;
-  for (const AnalysisNumber& each : analysis_numbers()) {
+  for (const AnalysisNumber& each : analysis_numbers) {
     PowerNumber number{.of = std::string(of_analysis),
                        .name = std::string(each.name),
-                       .value = each.get(settings),
+                       .value = each.of(settings),
                        .noticed_by = each.noticed_by};
     if (each.step == 0) {
       number.up = two_digit_trials(number.value, Change::larger, thousandths, 1000);
@@ -297,7 +299,7 @@ Runs Power::changed(const PowerNumber& number, double value) const {
                      WrongColumn{by_name(recorded_columns(), number.name), value});
   if (number.of == of_analysis) {
     Settings settings{input_.ensemble, {}};
-    by_name(analysis_numbers(), number.name).set(settings, value);
+    by_name(analysis_numbers, number.name).set(settings, value);
     return runs_with(input_, settings);
   }
   Runs runs = unchanged_;
@@ -305,9 +307,7 @@ Runs Power::changed(const PowerNumber& number, double value) const {
   Scene scene = run.scene;
   const std::vector<Changeable> numbers = changeable(scene);
   by_name(numbers, number.name).set(scene, value);
-  Record record;
-  record.impacts = record.contacts = true;
-  runs.put(number.of, simulate(scene, run.engine, record));
+  runs.put(number.of, simulate(scene, run.engine, {.impacts = true, .contacts = true}));
   return runs;
 }
 

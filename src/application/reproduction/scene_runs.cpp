@@ -59,7 +59,6 @@ Run read_run_of_one_damper(const fs::path& file) {
     throw InputError(file.string(), {{"/scene/dampers", problem_of_several().message}});
   return run;
 }
-Run read_run_of_any(const fs::path& file) { return read_run(file); }
 
 // Reads a file. If it is missing, the error names the command that makes it.
 template <class Content>
@@ -124,7 +123,7 @@ std::vector<Run> read_members(const Run& first, const fs::path& run_file, const 
     const std::string number = std::to_string(member);
     const fs::path file = member_file(run_file, member);
     Run& run = others[static_cast<std::size_t>(i)];
-    run = read_or_name_command(read_run_of_any, file,
+    run = read_or_name_command(read_run, file,
                                "impact-damper run --members " + std::to_string(options.members) + " -o " +
                                    run_file.string() + ", with the other options that made that run");
     require_scene(run, file, scenes[static_cast<std::size_t>(member - 1)],
@@ -152,7 +151,7 @@ Run SceneRuns::read(const std::string& scene) const {
 Run SceneRuns::read(const CatalogueRun& wanted) const {
   const fs::path file = file_of(wanted.name), scene_file = scenes / (wanted.scene + ".json");
   Run run =
-      read_or_name_command(read_run_of_any, file,
+      read_or_name_command(read_run, file,
                            "impact-damper run --scene " + scene_file.string() + " -o " + file.string() +
                                ", with what run " + wanted.name + " of the catalogue sets, and --members");
   const std::string source = "run " + wanted.name + " of the catalogue";

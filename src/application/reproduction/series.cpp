@@ -1,6 +1,7 @@
 #include "application/reproduction/series.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <variant>
@@ -13,6 +14,8 @@
 
 namespace impact_damper {
 namespace {
+
+constexpr std::array ratios{Varied::mass_ratio, Varied::restitution, Varied::damping_ratio};
 
 double of(const Scene& scene, Varied varied) {
   switch (varied) {
@@ -33,15 +36,8 @@ std::string percent(double ratio) {
 
 // Returns "ν = 2 %", as legends and subtitles show it.
 std::string equation(const Scene& scene, Varied varied) {
-  switch (varied) {
-    case Varied::mass_ratio:
-      return "ν = " + percent(scene.damper().mass_ratio);
-    case Varied::damping_ratio:
-      return "ζ = " + percent(scene.damping_ratio);
-    case Varied::restitution:
-      return "e = " + number_text(scene.damper().restitution);
-  }
-  return "";
+  if (varied == Varied::restitution) return "e = " + number_text(scene.damper().restitution);
+  return (varied == Varied::mass_ratio ? "ν = " : "ζ = ") + percent(of(scene, varied));
 }
 
 // The engine in words, for the line under the title; each run has a step of its own.
@@ -66,7 +62,7 @@ struct EngineWords {
 // Returns the line under the title: what all curves have in common, and what distinguishes one.
 std::string subtitle(const Figure& figure, const std::vector<const FigureRun*>& runs, const Scene& scene) {
   std::string text;
-  for (const Varied varied : {Varied::mass_ratio, Varied::restitution, Varied::damping_ratio}) {
+  for (const Varied varied : ratios) {
     if (figure.varied == varied) continue;
     text += (text.empty() ? "" : ", ") + equation(scene, varied);
   }
@@ -84,28 +80,21 @@ std::string subtitle(const Figure& figure, const std::vector<const FigureRun*>& 
   return text;
 }
 
-void check_comparable(const Figure& figure, const std::vector<const FigureRun*>& runs) {
-  for (const FigureRun* other : runs) {
-    if (name_of(other->run.engine) != name_of(runs[0]->run.engine)) {
-      throw unusable(figure, other->file, "comes from another engine than " + runs[0]->file.string());
-    }
-    for (const Varied same : {Varied::mass_ratio, Varied::restitution, Varied::damping_ratio}) {
-      if (figure.varied != same && of(other->run.scene, same) != of(runs[0]->run.scene, same)) {
-        throw unusable(figure, other->file,
-                       "must have the same " + std::string(name_of(same)) + " as " + runs[0]->file.string());
-      }
-    }
-  }
+// Throws unusable() unless the scene has the ratios of `wanted`, but for the one that the figure varies.
+void require_same_ratios(const Figure& figure, const std::filesystem::path& file, const Scene& scene,
+                         const Scene& wanted, const std::string& whose) {
+  for (const Varied same : ratios)
+    if (figure.varied != same && of(scene, same) != of(wanted, same))
+      throw unusable(figure, file, "must have the same " + std::string(name_of(same)) + " as " + whose);
 }
 
-// Throws unusable() unless all have the scene's mass ratio, restitution and damping ratio; forces may differ.
-void check_comparable(const Figure& figure, const std::vector<const FigureResponse*>& sources,
-                      const Scene& scene) {
-  for (const FigureResponse* source : sources)
-    for (const Varied same : {Varied::mass_ratio, Varied::restitution, Varied::damping_ratio})
-      if (of(scene_of(source->response), same) != of(scene, same))
-        throw unusable(figure, source->file,
-                       "must have the same " + std::string(name_of(same)) + " as the figure's others");
+void check_comparable(const Figure& figure, const std::vector<const FigureRun*>& runs) {
+  for (const FigureRun* other : runs) {
+    const std::string first = runs[0]->file.string();
+    if (name_of(other->run.engine) != name_of(runs[0]->run.engine))
+      throw unusable(figure, other->file, "comes from another engine than " + first);
+    require_same_ratios(figure, other->file, other->run.scene, runs[0]->run.scene, first);
+  }
 }
 
 // Returns the request of a response without its scene, as text.
@@ -120,7 +109,7 @@ std::string question_of(const Response& response) {
 void add_decay_block(const Figure& figure, const FigureRun& source, const std::string& number,
                      const std::string& legend, Table& table) {
   const HalfCycles& rows = half_cycles_of(figure, source);
-  table.blocks.push_back(
+  table.add(
       {.name = "curve-" + number,
        .columns = {{"time", "time of the peak, in units of 1/Omega_n", rows.peak_time},
                    {legend, "peak amplitude of the half cycle, divided by the clearance", rows.amplitude}}});
@@ -133,7 +122,7 @@ void add_law_blocks(const Figure& figure, const std::vector<const FigureRun*>& s
   TableBlock law{.name = "law",
                  .notes = {"one row for each curve, from its first peak to the first that is not above " +
                            number_text(*figure.down_to)},
-                 .columns = {{"mass ratio", "nu = m/M", {}}, {"rate", "average of -dA/dt / nu", {}}}};
+                 .columns = {{"mass ratio", "nu = m/M"}, {"rate", "average of -dA/dt / nu"}}};
   double begin = 0, amplitude = 0, rate = 0;  // sums, then means
   for (const FigureRun* source : sources) {
     const HalfCycles& rows = half_cycles_of(figure, *source);
@@ -142,21 +131,79 @@ void add_law_blocks(const Figure& figure, const std::vector<const FigureRun*>& s
         rows.amplitude.begin());
     if (end == 0) return;  // it begins there: no chord
     const double nu = source->run.scene.damper().mass_ratio;
-    law.columns[0].values.push_back(nu);
-    law.columns[1].values.push_back((rows.amplitude[0] - rows.amplitude[end]) /
-                                    (nu * (rows.peak_time[end] - rows.peak_time[0])));
+    law.add_row(
+        {nu, (rows.amplitude[0] - rows.amplitude[end]) / (nu * (rows.peak_time[end] - rows.peak_time[0]))});
     begin += nu * rows.peak_time[0];
     amplitude += rows.amplitude[0];
     rate += law.columns[1].values.back();
   }
   for (double* sum : {&begin, &amplitude, &rate}) *sum /= static_cast<double>(sources.size());
-  table.blocks.push_back(std::move(law));
-  table.blocks.push_back({.name = "line",
-                          .notes = {"dA/dt = -rate nu with the mean of the rates"},
-                          .columns = {{"scaled time", "nu t", {begin, begin + amplitude / rate}},
-                                      {"dA/dt = −" + rounded_text(rate, 2) + " ν",
-                                       "amplitude, divided by the clearance",
-                                       {amplitude, 0}}}});
+  table.add(std::move(law));
+  table.add({.name = "line",
+             .notes = {"dA/dt = -rate nu with the mean of the rates"},
+             .columns = {{"scaled time", "nu t", {begin, begin + amplitude / rate}},
+                         {"dA/dt = −" + rounded_text(rate, 2) + " ν",
+                          "amplitude, divided by the clearance",
+                          {amplitude, 0}}}});
+}
+
+// Returns the table of the scenes' runs, one for each curve, and of the responses.
+Table table_of(const Figure& figure, const std::vector<const FigureRun*>& sources,
+               const std::vector<const FigureResponse*>& found) {
+  const Scene& scene = sources.empty() ? scene_of(found.at(0)->response) : sources[0]->run.scene;
+  check_comparable(figure, sources);
+  for (const FigureResponse* source : found)  // forces may differ
+    require_same_ratios(figure, source->file, scene_of(source->response), scene, "the figure's others");
+
+  Table table{header_of(figure, subtitle(figure, sources, scene)), {}};
+  for (const std::string& name : scenes_of(figure)) {
+    const auto drawn = std::ranges::find(figure.curves, name, &FigureCurve::scene) - figure.curves.begin();
+    const Run& run = sources[static_cast<std::size_t>(drawn)]->run;
+    table.header.push_back("Scene " + name + ": " + scene_text(run.scene));
+    table.header.push_back("  engine: " + options_text(run.engine));
+  }
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const Response& response = found[i]->response;
+    table.header.push_back("Response " + figure.responses[i] + ": " + scene_text(scene_of(response)));
+    table.header.push_back("  " + question_of(response));
+  }
+  switch (figure.table) {
+    case TableKind::motion:
+      add_motion_blocks(figure, *sources[0], table);
+      break;
+    case TableKind::decay:
+    case TableKind::loss_factor:
+      for (std::size_t i = 0; i < sources.size(); ++i) {
+        const std::string number = std::to_string(i + 1);
+        const std::string legend =
+            figure.varied ? equation(sources[i]->run.scene, *figure.varied) : figure.curves[i].scene;
+        if (figure.table == TableKind::decay)
+          add_decay_block(figure, *sources[i], number, legend, table);
+        else
+          add_loss_block(figure, figure.curves[i], *sources[i], number, legend, table);
+      }
+      if (figure.table == TableKind::decay && figure.down_to) add_law_blocks(figure, sources, table);
+      if (!figure.range.empty()) add_spread_block(figure, table);
+      if (figure.table == TableKind::loss_factor) add_loss_theory_blocks(figure, sources, table);
+      break;
+    case TableKind::phase:
+      add_phase_blocks(figure, *sources[0], table);
+      break;
+    case TableKind::response:
+      add_response_blocks(figure, found, table);
+      break;
+    case TableKind::largest_response:
+      add_largest_blocks(figure, *sources[0], found, table);
+      break;
+    case TableKind::response_map:
+      add_map_blocks(figure, *found[0], table);
+      break;
+    case TableKind::design_charts:
+    case TableKind::damper_sets:
+    case TableKind::drawing:
+      break;
+  }
+  return table;
 }
 
 }  // namespace
@@ -168,6 +215,11 @@ std::string options_text(const Engine& engine) {
     if (option.decides_motion && !given.empty()) text += " " + std::string(option.name) + "=" + given;
   });
   return text;
+}
+
+std::vector<std::string> header_of(const Figure& figure, const std::string& parameters) {
+  return {"Figure " + figure.number + ": " + figure.title, "Parameters: " + parameters,
+          "Script: " + figure.script};
 }
 
 InputError unusable(const Figure& figure, const std::filesystem::path& file, const std::string& why) {
@@ -194,6 +246,11 @@ const HalfCycles& half_cycles_of(const Figure& figure, const FigureRun& source) 
   return rows;
 }
 
+void require_impacts(const Figure& figure, const FigureRun& source) {
+  if (!source.run.impacts) throw unusable(figure, source.file, "holds no impacts");
+  if (!source.run.contacts) throw unusable(figure, source.file, "holds no contacts");
+}
+
 std::int64_t members_shown(const Figure& figure, const std::string& scene) {
   std::int64_t members = 0;
   for (const FigureCurve& curve : figure.curves)
@@ -203,70 +260,26 @@ std::int64_t members_shown(const Figure& figure, const std::string& scene) {
 
 Table figure_table(const Figure& figure, const FigureRuns& runs, const FigureResponses& responses,
                    const FigureSweeps& sweeps) {
-  if (figure.table == TableKind::design_charts) return design_table(figure, sweeps.at(figure.plan));
-  if (figure.table == TableKind::damper_sets) return damper_sets_table(figure, runs);
-  std::vector<const FigureRun*> sources;
-  for (const FigureCurve& curve : figure.curves) sources.push_back(&runs.at(curve.scene));
-  std::vector<const FigureResponse*> found;
-  for (const std::string& name : figure.responses) found.push_back(&responses.at(name));
-  const Scene& scene = sources.empty() ? scene_of(found.at(0)->response) : sources[0]->run.scene;
-  check_comparable(figure, sources);
-  check_comparable(figure, found, scene);
-
+  std::filesystem::path first_file;
   Table table;
-  table.header = {"Figure " + figure.number + ": " + figure.title,
-                  "Parameters: " + subtitle(figure, sources, scene), "Script: " + figure.script};
-  for (const std::string& name : scenes_of(figure)) {
-    const Run& run = runs.at(name).run;
-    table.header.push_back("Scene " + name + ": " + scene_text(run.scene));
-    table.header.push_back("  engine: " + options_text(run.engine));
-  }
-  for (const std::string& name : figure.responses) {
-    const Response& response = responses.at(name).response;
-    table.header.push_back("Response " + name + ": " + scene_text(scene_of(response)));
-    table.header.push_back("  " + question_of(response));
-  }
-  switch (figure.table) {
-    case TableKind::motion:
-      add_motion_blocks(figure, *sources[0], table);
-      break;
-    case TableKind::decay:
-    case TableKind::loss_factor:
-      for (std::size_t i = 0; i < sources.size(); ++i) {
-        const std::string number = std::to_string(i + 1);
-        const std::string legend =
-            figure.varied ? equation(sources[i]->run.scene, *figure.varied) : figure.curves[i].scene;
-        if (figure.table == TableKind::decay) {
-          add_decay_block(figure, *sources[i], number, legend, table);
-        } else {
-          add_loss_block(figure, figure.curves[i], *sources[i], number, legend, table);
-        }
-      }
-      if (figure.table == TableKind::decay && figure.down_to) add_law_blocks(figure, sources, table);
-      if (!figure.range.empty()) add_spread_block(figure, table);
-      if (figure.table == TableKind::loss_factor) add_loss_theory_blocks(figure, sources, table);
-      break;
-    case TableKind::phase:
-      add_phase_blocks(figure, *sources[0], table);
-      break;
-    case TableKind::response:
-      add_response_blocks(figure, found, table);
-      break;
-    case TableKind::largest_response:
-      add_largest_blocks(figure, *sources[0], found, table);
-      break;
-    case TableKind::response_map:
-      add_map_blocks(figure, *found[0], table);
-      break;
-    case TableKind::design_charts:
-    case TableKind::damper_sets:
-    case TableKind::drawing:
-      break;
+  if (figure.table == TableKind::design_charts) {
+    first_file = sweeps.at(figure.plan).file;
+    table = design_table(figure, sweeps.at(figure.plan));
+  } else if (figure.table == TableKind::damper_sets) {
+    first_file = runs.at(figure.curves.front().run).file;
+    table = damper_sets_table(figure, runs);
+  } else {
+    std::vector<const FigureRun*> sources;
+    for (const FigureCurve& curve : figure.curves) sources.push_back(&runs.at(curve.scene));
+    std::vector<const FigureResponse*> found;
+    for (const std::string& name : figure.responses) found.push_back(&responses.at(name));
+    first_file = sources.empty() ? found.at(0)->file : sources[0]->file;
+    table = table_of(figure, sources, found);
   }
   try {
     check(table);
   } catch (const std::domain_error& error) {
-    throw unusable(figure, sources.empty() ? found[0]->file : sources[0]->file, error.what());
+    throw unusable(figure, first_file, error.what());
   }
   return table;
 }

@@ -12,11 +12,17 @@ namespace impact_damper {
 // Returns the error of a figure that cannot be made from a file: "figure 8: FILE: why".
 InputError unusable(const Figure& figure, const std::filesystem::path& file, const std::string& why);
 
+// Returns the first lines of a table's header.
+std::vector<std::string> header_of(const Figure& figure, const std::string& parameters);
+
 // Returns the engine with the options that decide the motion, for a table's header.
 std::string options_text(const Engine& engine);
 
 // Returns the run's half cycles. Throws unusable() if there is none, or none down to Figure::down_to.
 const HalfCycles& half_cycles_of(const Figure& figure, const FigureRun& source);
+
+// Throws unusable() unless the run holds impacts and contacts.
+void require_impacts(const Figure& figure, const FigureRun& source);
 
 void add_motion_blocks(const Figure& figure, const FigureRun& source, Table& table);
 // Adds these blocks for the samples [first, last] of any run's history, as far as there is something to show:
@@ -24,10 +30,14 @@ void add_motion_blocks(const Figure& figure, const FigureRun& source, Table& tab
 void add_motion_parts(const Run& run, std::size_t first, std::size_t last, Table& table);
 void add_loss_block(const Figure& figure, const FigureCurve& curve, const FigureRun& source,
                     const std::string& number, const std::string& legend, Table& table);
-// Adds the extremes over `run` and others like it, where all of them have a value; an empty block if they
-// never do.
-void add_band_block(const Figure& figure, const FigureCurve& curve, const Run& run,
-                    std::span<const Run> others, const std::string& number, Table& table);
+// One of the curves that a band encloses: its rows in the order of time.
+struct BandCurve {
+  std::span<const double> amplitude, ordinate;
+};
+// Adds rows (amplitude, least, greatest) to the block, where all of the curves have an ordinate: linear
+// between the first row below the amplitude and the one before it.
+void add_band_rows(const std::vector<BandCurve>& curves, const std::vector<double>& amplitudes,
+                   TableBlock& block);
 void add_spread_block(const Figure& figure, Table& table);
 void add_loss_theory_blocks(const Figure& figure, const std::vector<const FigureRun*>& sources, Table& table);
 void add_phase_blocks(const Figure& figure, const FigureRun& source, Table& table);

@@ -1,12 +1,17 @@
-// The table of the design charts, from a sweep over restitution and mass ratio that keeps the loss factor at
-// many amplitudes, of several releases each.
+// Tables of what a damper is chosen by: the design charts, from a sweep over restitution and mass ratio that
+// keeps the loss factor at many amplitudes, of several releases each; and several dampers, their loss
+// together beside the sum of the losses of each alone.
 #include <algorithm>
-#include <array>
+#include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "application/reproduction/series_blocks.hpp"
+#include "impact_damper/analysis/damper_sets.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/base/number_text.hpp"
+#include "impact_damper/io/scene_file.hpp"
 
 namespace impact_damper {
 namespace {
@@ -31,31 +36,47 @@ void check_plan(const Figure& figure, const SweepTable& sweep) {
                    "factors at amplitudes");
 }
 
+// Returns the run and the others of its ensemble.
+std::vector<Run> releases_of(const FigureRun& source) {
+  std::vector<Run> runs{source.run};
+  runs.insert(runs.end(), source.others.begin(), source.others.end());
+  return runs;
+}
+
+void check_sources(const Figure& figure, const FigureRun& set, const FigureRun& alone) {
+  if (has_one_damper(set.run.scene))
+    throw unusable(figure, set.file, "must be of a scene with a list of dampers");
+  if (!has_one_damper(alone.run.scene)) throw unusable(figure, alone.file, "must be of a single damper");
+  if (!alone.run.scene.until_amplitude) throw unusable(figure, alone.file, "must stop at an amplitude");
+  for (const SceneDamper& damper : set.run.scene.dampers)
+    if (damper.restitution != alone.run.scene.damper().restitution)
+      throw unusable(figure, alone.file, "must have the restitution of the dampers of " + set.file.string());
+}
+
 }  // namespace
 
 Table design_table(const Figure& figure, const SweepTable& sweep) {
   check_plan(figure, sweep);
   const Plan& plan = sweep.plan;
   const auto draws = std::size_t(plan.samples ? plan.samples->count : 1);
-  Table table;
-  table.header = {"Figure " + figure.number + ": " + figure.title,
-                  "Parameters: ζ = " + number_text(plan.scene.scene.damping_ratio) + "; mean of " +
-                      std::to_string(draws) + (draws == 1 ? " release" : " releases"),
-                  "Script: " + figure.script, "Plan " + figure.plan, "  " + plan.description};
+  Table table{header_of(figure, "ζ = " + number_text(plan.scene.scene.damping_ratio) + "; mean of " +
+                                    std::to_string(draws) + (draws == 1 ? " release" : " releases")),
+              {}};
+  table.header.insert(table.header.end(), {"Plan " + figure.plan, "  " + plan.description});
   const GridAxis &restitutions = plan.grid[0], &mass_ratios = plan.grid[1];
   const double least = *plan.quantities.front().at, most = *plan.quantities.back().at;
-  TableBlock reading{.name = "reading", .notes = {"the example of the report"}, .columns = {}};
+  TableBlock reading{.name = "reading", .notes = {"the example of the report"}};
   for (std::int64_t i = 0; i < restitutions.size(); ++i) {
     const double e = restitutions.value(i);
     const std::string panel = std::to_string(i + 1);
-    table.blocks.push_back({.name = "panel-" + panel,
-                            .columns = {{"restitution", "e", {e}}, {"e = " + number_text(e), "e", {e}}}});
+    table.add({.name = "panel-" + panel,
+               .columns = {{"restitution", "e", {e}}, {"e = " + number_text(e), "e", {e}}}});
     for (std::int64_t j = 0; j < mass_ratios.size(); ++j) {
       const double nu = mass_ratios.value(j);
       TableBlock curve{.name = "curve-" + panel + "-" + std::to_string(j + 1),
                        .notes = {"down to where one of the releases has no loss factor any more"},
-                       .columns = {{"amplitude", of_peak, {}},
-                                   {"ν = " + rounded_text(100 * nu, 3) + " %", of_mean_loss, {}},
+                       .columns = {{"amplitude", of_peak},
+                                   {"ν = " + rounded_text(100 * nu, 3) + " %", of_mean_loss},
                                    {"least", "of the releases", {}, Ordinate::low},
                                    {"greatest", "of the releases", {}, Ordinate::high}}};
       const std::size_t first = std::size_t(i * mass_ratios.size() + j) * draws;
@@ -70,30 +91,76 @@ Table design_table(const Figure& figure, const SweepTable& sweep) {
           sum += *value;
         }
         if (values.size() < draws) {
-          if (curve.columns[0].values.empty()) continue;  // above the release
+          if (curve.rows() == 0) continue;  // above the release
           break;
         }
         const double amplitude = *plan.quantities[n].at, mean = sum / double(draws);
         const Spread spread = spread_of(values);
-        const std::array row{amplitude, mean, spread.low, spread.high};
-        for (std::size_t c = 0; c < row.size(); ++c) curve.columns[c].values.push_back(row[c]);
+        curve.add_row({amplitude, mean, spread.low, spread.high});
         if (e == example.restitution && nu == example.mass_ratio && amplitude == example.amplitude)
           reading.columns = {{"amplitude", of_peak, {amplitude}},
                              {"example", of_mean_loss, {mean}},
                              {"restitution", "e", {e}},
                              {"mass ratio", "nu", {nu}}};
       }
-      if (!curve.columns[0].values.empty()) table.blocks.push_back(std::move(curve));
+      table.add_if_any(std::move(curve));
     }
     for (const auto& [name, amplitude] :
          {std::pair("failure-" + panel, fold_amplitude(e)), {"bounce-down-" + panel, bounce_down_end(e)}})
       if (amplitude > least && amplitude < most)
-        table.blocks.push_back(
-            {.name = name,
-             .notes = {"closed form for nu -> 0"},
-             .columns = {{"amplitude", of_peak, {amplitude}}, {name, "restitution e", {e}}}});
+        table.add({.name = name,
+                   .notes = {"closed form for nu -> 0"},
+                   .columns = {{"amplitude", of_peak, {amplitude}}, {name, "restitution e", {e}}}});
   }
-  if (!reading.columns.empty()) table.blocks.push_back(std::move(reading));
+  table.add_if_any(std::move(reading));
+  return table;
+}
+
+Table damper_sets_table(const Figure& figure, const FigureRuns& runs) {
+  for (const FigureCurve& curve : figure.curves)
+    check_sources(figure, runs.at(curve.run), runs.at(curve.alone));
+  const Scene& first = runs.at(figure.curves.front().run).run.scene;
+  Table table{header_of(figure, "e = " + number_text(first.dampers.front().restitution) +
+                                    ", ζ = " + number_text(first.damping_ratio) + "; restitution model"),
+              {}};
+  for (const std::string& name : runs_of(figure)) {
+    const FigureRun& source = runs.at(name);
+    table.header.push_back("Run " + name + ", " + std::to_string(source.others.size() + 1) +
+                           " releases: " + scene_text(source.run.scene));
+    table.header.push_back("  engine: " + options_text(source.run.engine));
+  }
+  const std::vector<double> edges =
+      descending_amplitudes(figure.range[1], figure.range[0], set_bins_in_decade);
+  std::vector<double> middles;
+  for (std::size_t k = 0; k + 1 < edges.size(); ++k) middles.push_back(std::sqrt(edges[k] * edges[k + 1]));
+  for (std::size_t i = 0; i < figure.curves.size(); ++i) {
+    const FigureRun &set = runs.at(figure.curves[i].run), &one = runs.at(figure.curves[i].alone);
+    for (const FigureRun* source : {&set, &one}) half_cycles_of(figure, *source);
+    const std::vector<SceneDamper>& dampers = set.run.scene.dampers;
+    const double mass = std::accumulate(dampers.begin(), dampers.end(), 0.0,
+                                        [](double sum, const auto& each) { return sum + each.mass_ratio; });
+    LossSpread losses = losses_between(releases_of(set), edges);
+    std::vector<double> sum = sum_of_losses(dampers, loss_alone(releases_of(one)), edges);
+    for (std::vector<double>* values : {&losses.mean, &losses.low, &losses.high, &sum})
+      for (double& value : *values) value /= mass;
+    const std::string number = std::to_string(i + 1), count = std::to_string(dampers.size());
+    const char* const of_middle = "peak amplitude, divided by epsilon; the middle of a twelfth of a decade";
+    table.add({.name = "set-" + number,
+               .notes = {"run " + figure.curves[i].run},
+               .columns = {{"amplitude", of_middle, middles},
+                           {count + (dampers.size() == 1 ? " damper" : " dampers"),
+                            "loss factor eta / (sum of nu) by the mean of the releases' times", losses.mean},
+                           {"least", "of the releases", losses.low, Ordinate::low},
+                           {"greatest", "of the releases", losses.high, Ordinate::high}}});
+    table.add({.name = "sum-" + number,
+               .notes = {"run " + figure.curves[i].alone + " for each damper"},
+               .columns = {{"amplitude", of_middle, middles},
+                           {"sum of " + count + " alone", "the same if they add", sum}}});
+    TableBlock list{.name = "dampers-" + number,
+                    .columns = {{"clearance", "divided by epsilon"}, {"mass", "nu_i / (sum of nu)"}}};
+    for (const SceneDamper& damper : dampers) list.add_row({damper.clearance, damper.mass_ratio / mass});
+    table.add(std::move(list));
+  }
   return table;
 }
 

@@ -35,19 +35,17 @@ std::string meaning(LossOrdinate which) {
   return "";
 }
 
-// Returns amplitude i of last + 1, equally spaced in the logarithm, both ends included.
-double amplitude_at(int i, int last, double from, double to) {
-  if (i == 0) return from;
-  if (i == last) return to;
-  return from * exponential(logarithm(to / from) * i / last);
+// Returns last + 1 amplitudes, equally spaced in the logarithm, both ends included.
+std::vector<double> amplitudes_between(double from, double to, int last) {
+  std::vector<double> amplitudes{from};
+  for (int i = 1; i < last; ++i) amplitudes.push_back(from * exponential(logarithm(to / from) * i / last));
+  if (last > 0) amplitudes.push_back(to);
+  return amplitudes;
 }
 
 // Returns amplitudes along a closed form, no further apart than a factor of exp(spacing).
 std::vector<double> theory_amplitudes(double from, double to, double spacing) {
-  const int last = static_cast<int>(std::ceil(logarithm(to / from) / spacing));
-  std::vector<double> amplitudes;
-  for (int i = 0; i <= last; ++i) amplitudes.push_back(amplitude_at(i, last, from, to));
-  return amplitudes;
+  return amplitudes_between(from, to, static_cast<int>(std::ceil(logarithm(to / from) / spacing)));
 }
 
 // Returns how many rows of `loss` average at least one peak before impact failure; all, if none is found.
@@ -109,97 +107,84 @@ TableBlock theory_block(const std::string& name, const std::string& legend, Loss
 
 double largest_amplitude(const Run& run) { return std::ranges::max(run.half_cycles->amplitude); }
 
-}  // namespace
-
-void add_band_block(const Figure& figure, const FigureCurve& curve, const Run& run,
-                    std::span<const Run> others, const std::string& number, Table& table) {
-  std::vector<LossCurve> members{LossCurve(figure, curve, run)};
-  for (const Run& other : others) members.emplace_back(figure, curve, other);
-  const LossCurve& own = members.front();
+// Returns the extremes over the first members of the ensemble, where all of them have a value; no rows if
+// they never do.
+TableBlock band_block(const Figure& figure, const FigureCurve& curve, const FigureRun& source,
+                      const std::string& number) {
+  std::vector<LossCurve> members{LossCurve(figure, curve, source.run)};
+  for (const Run& other : std::span(source.others).first(static_cast<std::size_t>(curve.ensemble - 1)))
+    members.emplace_back(figure, curve, other);
+  std::vector<BandCurve> curves;
+  for (const LossCurve& member : members)
+    curves.push_back({std::span(member.loss.amplitude).first(member.kept), member.values});
   const std::string count = std::to_string(members.size());
   const EnsembleOptions options;
   TableBlock block{
       .name = "band-" + number,
       .notes = {count + " releases of scene " + curve.scene + ", x0 shifted by up to " +
                 std::to_string(options.most_steps) + " times " + number_text(options.step) + " of it"},
-      .columns = {{"amplitude", "peak amplitude A, divided by the clearance", {}},
+      .columns = {{"amplitude", "peak amplitude A, divided by the clearance"},
                   {"least", "ordinate of the ensemble", {}, Ordinate::low},
                   {count + " releases", "greatest ordinate", {}, Ordinate::high}}};
-  const auto own_end = own.loss.amplitude.begin() + static_cast<std::ptrdiff_t>(own.kept);
-  const double least = *std::min_element(own.loss.amplitude.begin(), own_end);
-  // The amplitudes descend, so that each member is traversed once: its row is the first below the amplitude.
   constexpr int last = 240;
-  std::vector<std::size_t> row(members.size(), 0);
-  std::vector<double> values(members.size());
-  for (int k = last; k >= 0; --k) {
-    const double amplitude = amplitude_at(k, last, least, largest_amplitude(run));
-    bool all = true;
-    for (std::size_t n = 0; n < members.size(); ++n) {
-      const auto& [loss, ordinates, kept] = members[n];
-      std::size_t& i = row[n];
-      while (i < kept && !(loss.amplitude[i] < amplitude)) ++i;
-      if (i == 0 || i == kept) {
-        all = false;
-        continue;
-      }
-      const double part = (loss.amplitude[i - 1] - amplitude) / (loss.amplitude[i - 1] - loss.amplitude[i]);
-      values[n] = ordinates[i - 1] + part * (ordinates[i] - ordinates[i - 1]);
+  const double least = std::ranges::min(curves.front().amplitude);
+  add_band_rows(curves, amplitudes_between(least, largest_amplitude(source.run), last), block);
+  return block;
+}
+
+}  // namespace
+
+void add_band_rows(const std::vector<BandCurve>& curves, const std::vector<double>& amplitudes,
+                   TableBlock& block) {
+  for (const double amplitude : amplitudes) {
+    std::vector<double> values;
+    for (const auto& [over, ordinate] : curves) {
+      const auto below = std::ranges::find_if(over, [&](double a) { return a < amplitude; });
+      const auto i = static_cast<std::size_t>(below - over.begin());
+      if (i == 0 || i == over.size()) break;
+      const double part = (over[i - 1] - amplitude) / (over[i - 1] - over[i]);
+      values.push_back(ordinate[i - 1] + part * (ordinate[i] - ordinate[i - 1]));
     }
-    if (!all) continue;
-    const Spread spread = spread_of(values);
-    block.columns[0].values.push_back(amplitude);
-    block.columns[1].values.push_back(spread.low);
-    block.columns[2].values.push_back(spread.high);
+    if (values.size() < curves.size()) continue;
+    const auto [least, greatest] = std::ranges::minmax(values);
+    block.add_row({amplitude, least, greatest});
   }
-  for (TableColumn& column : block.columns) std::ranges::reverse(column.values);
-  table.blocks.push_back(std::move(block));
 }
 
 void add_loss_block(const Figure& figure, const FigureCurve& curve, const FigureRun& source,
                     const std::string& number, const std::string& legend, Table& table) {
-  const HalfCycles& rows = half_cycles_of(figure, source);
+  const std::size_t half_cycles = half_cycles_of(figure, source).amplitude.size();
   const int span = curve.loss_factor.half_cycles;
   const LossCurve own(figure, curve, source.run);
-  const auto& [loss, values, kept] = own;
-  if (loss.eta.size() < 2) {
+  if (own.values.size() < 2)
     throw unusable(figure, source.file,
-                   "is too short: " + std::to_string(rows.amplitude.size()) +
+                   "is too short: " + std::to_string(half_cycles) +
                        " half cycles, the averaging needs at least " + std::to_string(span + 2));
-  }
-  const auto part = [&](const std::vector<double>& column, std::size_t from, std::size_t to) {
-    return std::vector<double>(column.begin() + static_cast<std::ptrdiff_t>(from),
-                               column.begin() + static_cast<std::ptrdiff_t>(to));
+  const auto add = [&](const std::string& name, const std::string& note, LossOrdinate which, std::size_t from,
+                       std::size_t to) {
+    const auto part = [&](const std::vector<double>& column) {
+      return std::vector<double>(column.begin() + static_cast<std::ptrdiff_t>(from),
+                                 column.begin() + static_cast<std::ptrdiff_t>(to));
+    };
+    table.add({.name = name + number,
+               .notes = {"scene " + curve.scene + ", " + note},
+               .columns = {{"amplitude", "peak amplitude A, averaged, divided by the clearance",
+                            part(own.loss.amplitude)},
+                           {legend, meaning(which), part(ordinate(own.loss, source.run.scene, which))}}});
   };
-  const auto block = [&, &loss = loss, &values = values](const std::string& block_name,
-                                                         const std::string& note, std::size_t from,
-                                                         std::size_t to) {
-    table.blocks.push_back({.name = block_name,
-                            .notes = {"scene " + curve.scene + ", averaged over " + std::to_string(span) +
-                                      " half cycles" + note},
-                            .columns = {{"amplitude", "peak amplitude A, averaged, divided by the clearance",
-                                         part(loss.amplitude, from, to)},
-                                        {legend, meaning(*figure.ordinate), part(values, from, to)}}});
-  };
-  block("curve-" + number, "", 0, kept);
-  if (kept < values.size())
-    block("failed-" + number, ", no peak of which precedes impact failure", kept, values.size());
-  if (figure.second_ordinate) {
-    table.blocks.push_back(
-        {.name = "second-" + number,
-         .notes = {"scene " + curve.scene + ", the same curve in the second panel's ordinate"},
-         .columns = {{"amplitude", "peak amplitude A, averaged, divided by the clearance",
-                      part(loss.amplitude, 0, kept)},
-                     {legend, meaning(*figure.second_ordinate),
-                      part(ordinate(loss, source.run.scene, *figure.second_ordinate), 0, kept)}}});
-  }
-  if (curve.ensemble > 0) {
-    const auto others = static_cast<std::size_t>(curve.ensemble - 1);
-    if (source.others.size() < others)
-      throw unusable(figure, source.file,
-                     "has " + std::to_string(source.others.size() + 1) + " of the " +
-                         std::to_string(curve.ensemble) + " members of its ensemble");
-    add_band_block(figure, curve, source.run, std::span(source.others).first(others), number, table);
-  }
+  const std::string averaged = "averaged over " + std::to_string(span) + " half cycles";
+  const std::size_t rows = own.values.size();
+  add("curve-", averaged, *figure.ordinate, 0, own.kept);
+  if (own.kept < rows)
+    add("failed-", averaged + ", no peak of which precedes impact failure", *figure.ordinate, own.kept, rows);
+  if (figure.second_ordinate)
+    add("second-", "the same curve in the second panel's ordinate", *figure.second_ordinate, 0, own.kept);
+  if (curve.ensemble == 0) return;
+  if (std::ssize(source.others) + 1 < curve.ensemble)
+    throw unusable(figure, source.file,
+                   "has " + std::to_string(source.others.size() + 1) + " of the " +
+                       std::to_string(curve.ensemble) + " members of its ensemble");
+  table.add(band_block(figure, curve, source, number));
 }
 
 void add_spread_block(const Figure& figure, Table& table) {
@@ -207,7 +192,7 @@ void add_spread_block(const Figure& figure, Table& table) {
   for (const TableBlock& block : table.blocks) {
     if (!block.name.starts_with("curve-")) continue;
     // Without the first point: the release is among the peaks that it is fitted to.
-    for (std::size_t i = 1; i < block.columns[0].values.size(); ++i) {
+    for (std::size_t i = 1; i < block.rows(); ++i) {
       const double amplitude = block.columns[0].values[i], value = block.columns[1].values[i];
       if (amplitude < figure.range[0] || amplitude > figure.range[1]) continue;
       least = std::min(least, value);
@@ -219,14 +204,13 @@ void add_spread_block(const Figure& figure, Table& table) {
   const double percent = 100 * (most - middle) / middle;
   const std::string legend =
       number_text(std::round(middle * 1e3) / 1e3) + " ± " + number_text(std::round(percent)) + " %";
-  table.blocks.push_back({.name = "spread",
-                          .notes = {"middle, least and greatest ordinate of all curves over the amplitudes "
-                                    "of its two rows, but for each "
-                                    "curve's first point, which the release enters"},
-                          .columns = {{"amplitude", "divided by the clearance", figure.range},
-                                      {"least", "of all curves", {least, least}, Ordinate::low},
-                                      {"most", "of all curves", {most, most}, Ordinate::high},
-                                      {legend, "half way between least and most", {middle, middle}}}});
+  table.add({.name = "spread",
+             .notes = {"middle, least and greatest ordinate of all curves over the amplitudes of its two "
+                       "rows, but for each curve's first point, which the release enters"},
+             .columns = {{"amplitude", "divided by the clearance", figure.range},
+                         {"least", "of all curves", {least, least}, Ordinate::low},
+                         {"most", "of all curves", {most, most}, Ordinate::high},
+                         {legend, "half way between least and most", {middle, middle}}}});
 }
 
 void add_loss_theory_blocks(const Figure& figure, const std::vector<const FigureRun*>& sources,
@@ -241,8 +225,7 @@ void add_loss_theory_blocks(const Figure& figure, const std::vector<const Figure
     if (!forms || forms->restitution != scene.damper().restitution || forms->largest != largest)
       forms.emplace(scene.damper().restitution, largest);
     const auto add = [&](const std::string& name, const std::string& legend, const LossFactor& form) {
-      table.blocks.push_back(
-          theory_block(name + "-" + std::to_string(i + 1), legend, form, scene, *figure.ordinate));
+      table.add(theory_block(name + "-" + std::to_string(i + 1), legend, form, scene, *figure.ordinate));
     };
     add("one-impact", "one impact per half cycle", forms->one_impact);
     if (!forms->bounce_down.eta.empty()) add("bounce-down", "bounce-down", forms->bounce_down);

@@ -4,7 +4,7 @@
 #include <limits>
 #include <map>
 
-#include "application/reproduction/largest_amplitude.hpp"
+#include "application/reproduction/curve.hpp"
 #include "application/reproduction/series_blocks.hpp"
 #include "impact_damper/analysis/design.hpp"
 #include "impact_damper/base/number_text.hpp"
@@ -18,14 +18,9 @@ constexpr const char *of_frequency = "frequency of the force, divided by Omega_n
                      *of_amplitude = "largest |x|, divided by the clearance";
 
 // Points of a block of two columns; without points there is no block.
-struct Points {
-  std::vector<double> x, y;
+struct Points : Curve {
   std::vector<std::size_t> gaps;
 
-  void add(double at, double value) {
-    x.push_back(at);
-    y.push_back(value);
-  }
   void interrupt() {
     if (!x.empty()) gaps.push_back(x.size());
   }
@@ -33,10 +28,10 @@ struct Points {
 void add_block(Table& table, const std::string& name, const char* of_x, const std::string& legend,
                const char* of_y, const Points& points, std::vector<std::string> notes = {}) {
   if (points.x.empty()) return;
-  table.blocks.push_back({.name = name,
-                          .notes = std::move(notes),
-                          .columns = {{"x", of_x, points.x}, {legend, of_y, points.y}},
-                          .gaps = points.gaps});
+  table.add({.name = name,
+             .notes = std::move(notes),
+             .columns = {{"x", of_x, points.x}, {legend, of_y, points.y}},
+             .gaps = points.gaps});
 }
 
 // Adds the linear response with the damper's mass locked, or without it; resonance without damping leaves a
@@ -146,9 +141,9 @@ void add_response_blocks(const Figure& figure, const std::vector<const FigureRes
     add_ways(panels.back(), sweep);
     const std::string panel = std::to_string(panels.size());
     const double force = scene.force_amplitude / scene.damper().mass_ratio;
-    table.blocks.push_back({.name = "panel-" + panel,
-                            .columns = {{"force", of_force, {force}},
-                                        {"f₀ = " + rounded_text(force, 3) + " ν", of_force, {force}}}});
+    table.add({.name = "panel-" + panel,
+               .columns = {{"force", of_force, {force}},
+                           {"f₀ = " + rounded_text(force, 3) + " ν", of_force, {force}}}});
     add_linear_block(table, "empty-" + panel, "without the secondary mass", scene, sweep.axis, 1);
     add_linear_block(table, "locked-" + panel, "secondary mass locked", scene, sweep.axis,
                      1 + scene.damper().mass_ratio);
@@ -181,15 +176,10 @@ void add_largest_blocks(const Figure& figure, const FigureRun& decay,
   }
   Points rising, falling;
   for (const auto& responses : along_the_same_forces) {
-    const std::vector<double> forces = responses.front()->axis.values();
-    for (std::size_t n = 0; n < responses.front()->sweeps.size(); ++n) {
-      for (std::size_t i = 0; i < forces.size(); ++i) {
-        const double up = largest_amplitude(responses, n, &Sweep::up, i),
-                     down = largest_amplitude(responses, n, &Sweep::down, i);
-        if (up > 0) rising.add(forces[i] / nu, up);
-        if (down > 0) falling.add(forces[i] / nu, down);
-      }
-    }
+    for (const auto& [way, points] : {std::pair(&Sweep::up, &rising), {&Sweep::down, &falling}})
+      for (const Curve& curve : largest_amplitudes(responses, way))
+        for (std::size_t i = 0; i < curve.x.size(); ++i)
+          if (curve.y[i] > 0) points->add(curve.x[i] / nu, curve.y[i]);
   }
 
   // A eta of the decay, and of its ensemble: (M14.7) turns them into forces.
@@ -261,10 +251,10 @@ void add_map_blocks(const Figure& figure, const FigureResponse& source, Table& t
                response.second.value(n / response.first.count) / nu);
   }
   const auto step = [](const Axis& axis) { return (axis.to - axis.from) / double(axis.count - 1); };
-  table.blocks.push_back({.name = "cell",
-                          .notes = {"how far apart the points of the map are"},
-                          .columns = {{"width", of_frequency, {step(response.first)}},
-                                      {"height", of_force, {step(response.second) / nu}}}});
+  table.add({.name = "cell",
+             .notes = {"how far apart the points of the map are"},
+             .columns = {{"width", of_frequency, {step(response.first)}},
+                         {"height", of_force, {step(response.second) / nu}}}});
   for (const std::string& name : order)
     if (const auto found = regimes.find(name); found != regimes.end())
       add_block(table, name, of_frequency, found->second.first, of_force, found->second.second);

@@ -11,9 +11,9 @@ namespace {
 
 void check_block(const TableBlock& block) {
   const std::string where = "table block " + block.name;
-  if (block.columns.empty() || block.columns[0].values.empty()) throw std::domain_error(where + " is empty");
+  if (block.rows() == 0) throw std::domain_error(where + " is empty");
   for (const TableColumn& column : block.columns) {
-    if (column.values.size() != block.columns[0].values.size()) {
+    if (column.values.size() != block.rows()) {
       throw std::domain_error(where + ": column \"" + column.heading + "\" differs in length");
     }
     for (const double value : column.values) {
@@ -36,8 +36,8 @@ void append(std::string& text, const TableBlock& block) {
   }
   text += '\n';
   constexpr std::size_t usual_length = 20;  // of a number and the character after it
-  text.reserve(text.size() + usual_length * block.columns.size() * block.columns[0].values.size());
-  for (std::size_t row = 0; row < block.columns[0].values.size(); ++row) {
+  text.reserve(text.size() + usual_length * block.columns.size() * block.rows());
+  for (std::size_t row = 0; row < block.rows(); ++row) {
     if (std::ranges::binary_search(block.gaps, row)) text += '\n';
     for (std::size_t c = 0; c < block.columns.size(); ++c) {
       if (c) text += ' ';
@@ -54,10 +54,12 @@ std::string csv_cell(const std::string& text) {
   return quoted + '"';
 }
 
+// Returns the last column of this role behind the first column; a null pointer if there is none.
 const TableColumn* column_of(const TableBlock& block, Ordinate ordinate) {
-  const auto found = std::find_if(block.columns.begin() + 1, block.columns.end(),
-                                  [&](const TableColumn& column) { return column.is == ordinate; });
-  return found == block.columns.end() ? nullptr : &*found;
+  const TableColumn* found = nullptr;
+  for (std::size_t c = 1; c < block.columns.size(); ++c)
+    if (block.columns[c].is == ordinate) found = &block.columns[c];
+  return found;
 }
 
 // Appends the rows of one curve; each of the columns may be absent.
@@ -94,11 +96,9 @@ std::string to_csv(const Table& table) {
   check(table);
   std::string text = "block,curve,x,y,low,high\n";
   for (const TableBlock& block : table.blocks) {
-    const TableColumn *const low = column_of(block, Ordinate::low), *const high =
-                                                                        column_of(block, Ordinate::high);
-    const TableColumn* last = nullptr;
-    for (std::size_t c = 1; c < block.columns.size(); ++c)
-      if (block.columns[c].is == Ordinate::y) last = &block.columns[c];
+    const TableColumn *const low = column_of(block, Ordinate::low),
+                             *const high = column_of(block, Ordinate::high),
+                             *const last = column_of(block, Ordinate::y);
     for (std::size_t c = 1; c < block.columns.size(); ++c) {
       const TableColumn& y = block.columns[c];
       if (y.is != Ordinate::y) continue;

@@ -4,8 +4,12 @@
 // columns, the last heading being the legend of the block: `title columnheader(N)`.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <initializer_list>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace impact_damper {
@@ -16,7 +20,7 @@ enum class Ordinate { y, low, high };
 struct TableColumn {
   std::string heading;
   std::string meaning;  // what it is and what it is scaled by
-  std::vector<double> values;
+  std::vector<double> values = {};
   Ordinate is = Ordinate::y;
 };
 
@@ -25,11 +29,26 @@ struct TableBlock {
   std::vector<std::string> notes = {};  // comment lines
   std::vector<TableColumn> columns = {};
   std::vector<std::size_t> gaps = {};  // rows before which a drawn line is interrupted, ascending
+
+  std::size_t rows() const { return columns.empty() ? 0 : columns[0].values.size(); }
+  // Adds a number to each column.
+  void add_row(std::initializer_list<double> row) {
+    auto column = columns.begin();
+    for (const double value : row) (column++)->values.push_back(value);
+  }
 };
 
 struct Table {
   std::vector<std::string> header;  // comment lines
   std::vector<TableBlock> blocks;
+
+  void add(TableBlock block) { blocks.push_back(std::move(block)); }
+  void add_if_any(TableBlock block) {  // unless it has no rows
+    if (block.rows() > 0) add(std::move(block));
+  }
+  bool has(std::string_view block) const {
+    return std::ranges::find(blocks, block, &TableBlock::name) != blocks.end();
+  }
 };
 
 // Throws std::domain_error naming block and column if a block is empty, its columns differ in length, or a

@@ -18,7 +18,7 @@
 #include <string>
 #include <string_view>
 
-#include "application/reproduction/printed.hpp"
+#include "application/reproduction/claims.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
 
 namespace impact_damper {
