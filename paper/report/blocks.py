@@ -144,7 +144,7 @@ def made_from(values: Values, number: str, link=lambda words, file: words) -> st
 
 
 def damper_html(values: Values, number: str) -> str:
-    """The place for a damper to play with (src/wasm/page/start.js), beside figures of one motion and of its phases."""
+    """The place for a damper to play with (src/wasm/page/damper.js), beside figures of one motion and of its phases."""
     figure = values.figures[number]
     if figure["table"] not in ("motion", "phase"):
         return ""

@@ -28,7 +28,6 @@ ALLOWED = {
     ("application/cli/main.cpp", "ostringstream"): "CLI11 writes its help into it, in the classic locale; no number of a result",
     ("application/cli/drawing.cpp", "environ"): "where gnuplot is looked for, and what it inherits; what it heeds is set (figures/draw)",
     ("application/cli/sweep.cpp", "steady_clock"): "when to show progress on stderr, and how long a sweep will take",
-    ("application/cli/verify.cpp", "steady_clock"): "when to show progress on stderr",
     ("impact_damper/base/number_by_c_library.cpp", "snprintf"):
         "only for WebAssembly, whose C library has one locale; the text is held against to_chars (number_text: ...)",
     ("impact_damper/base/number_by_c_library.cpp", "strtod"): "the same",

@@ -121,6 +121,7 @@ class Package(unittest.TestCase):
     def test_in_node_run_files_are_the_programs(self):
         self.assertEqual(run_in_node(self.stranger, WORK / "node"), "")
         self.assertEqual(different(WORK / "native", WORK / "node"), [])
+        self.assertEqual([file.name for file in (WORK / "node").glob("*.json") if str(SOURCE) in file.read_text()], [])
 
     def test_one_wrong_bit_in_the_sine_is_noticed(self):
         faulty = WORK / "faulty"

@@ -1,6 +1,6 @@
 #include "arguments.hpp"
 
-#include "impact_damper/base/number_text.hpp"
+#include <algorithm>
 
 namespace impact_damper::cli {
 
@@ -14,6 +14,22 @@ std::optional<std::string> Arguments::file(const std::string& option) {
   if (!name || !name->empty()) return name;
   reject(option, "must be a file name, got \"\"");
   return std::nullopt;
+}
+
+std::optional<std::string> Arguments::required_file(const std::string& option, const std::string& what) {
+  std::optional<std::string> name = file(option);
+  if (!name) reject(option, "must be given: " + what);
+  return name;
+}
+
+std::vector<std::string> Arguments::files(const std::string& argument) {
+  std::vector<std::string> files;
+  if (const auto first = file(argument)) files.push_back(*first);
+  for (const std::string& more : more_) {
+    if (more.starts_with('-')) throw UsageError({Problem{"", "unknown argument " + in_quotes(more)}});
+    files.push_back(more);
+  }
+  return files;
 }
 
 bool Arguments::flag(const std::string& option) {
@@ -59,13 +75,28 @@ std::optional<std::size_t> Arguments::word(const std::string& option,
                                            const std::vector<std::string_view>& words) {
   const std::optional<std::string> given_text = text(option);
   if (!given_text) return std::nullopt;
-  std::string list;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (*given_text == words[i]) return i;
-    list += (i == 0 ? "" : ", ") + std::string(words[i]);
-  }
-  reject(option, "must be one of " + list + ", got " + in_quotes(*given_text));
+  const auto found = std::ranges::find(words, *given_text);
+  if (found != words.end()) return std::size_t(found - words.begin());
+  reject(option, "must be one of " + joined(words, ", ") + ", got " + in_quotes(*given_text));
   return std::nullopt;
+}
+
+std::optional<std::size_t> Arguments::required_word(const std::string& option,
+                                                    const std::vector<std::string_view>& words) {
+  if (!given(option)) reject(option, "must be given: " + listed(words, "or"));
+  return word(option, words);
+}
+
+void Arguments::read(const std::string& option, double& value, NumberRange range) {
+  value = number(option, range).value_or(value);
+}
+
+void Arguments::read(const std::string& option, std::optional<double>& value, NumberRange range) {
+  if (const auto given_value = number(option, range)) value = given_value;
+}
+
+void Arguments::read(const std::string& option, std::int64_t& value, NumberRange range) {
+  value = whole_number(option, range).value_or(value);
 }
 
 void Arguments::reject(const std::string& option, const std::string& what) {
@@ -78,15 +109,65 @@ void Arguments::finish() const {
 
 Threads threads_of(Arguments& arguments) { return arguments.whole_number("--threads", within(1, 1024)); }
 
+std::vector<std::string_view> parts_of(std::string_view text, char between) {
+  std::vector<std::string_view> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(between, begin), text.size());
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+std::string with_values(std::string_view pattern, const std::vector<std::string>& values) {
+  std::string text;
+  for (const std::string& value : values) {
+    const std::size_t place = pattern.find("{}");
+    text.append(pattern.substr(0, place)).append(value);
+    pattern.remove_prefix(place + 2);
+  }
+  return text.append(pattern);
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known) {
+  const auto meant = nearest(word, known);
+  return meant ? ", did you mean " + std::string(*meant) + "?" : "";
+}
+
+std::optional<std::vector<double>> parse_numbers(std::string_view text, char between) {
+  std::vector<double> numbers;
+  for (const std::string_view part : parts_of(text, between)) {
+    const auto number = parse_number(part);
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
 std::optional<Triple> parse_triple(std::string_view text) {
-  const std::size_t first = text.find(':');
-  const std::size_t second = first == std::string_view::npos ? first : text.find(':', first + 1);
-  if (second == std::string_view::npos) return std::nullopt;
-  const auto a = parse_number(text.substr(0, first));
-  const auto b = parse_number(text.substr(first + 1, second - first - 1));
-  const auto count = parse_integer(text.substr(second + 1));
+  const auto parts = parts_of(text, ':');
+  if (parts.size() != 3) return std::nullopt;
+  const auto a = parse_number(parts[0]), b = parse_number(parts[1]);
+  const auto count = parse_integer(parts[2]);
   if (!a || !b || !count) return std::nullopt;
   return Triple{*a, *b, *count};
+}
+
+std::optional<Varied> varied_of(Arguments& arguments, const std::string& text,
+                                const std::vector<std::string_view>& names, const std::string& option) {
+  const std::size_t equals = text.find('=');
+  std::string name = text.substr(0, equals);
+  std::ranges::replace(name, '-', '_');
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) {
+    std::string help = did_you_mean(name, names);
+    constexpr std::size_t most_listed = 20;  // of a list of dampers there are up to thousands
+    if (help.empty() && names.size() <= most_listed) help = "; there are " + listed(names, "and");
+    arguments.reject(option, "must name a number of the scene before the =, got " + in_quotes(text) + help);
+    return std::nullopt;
+  }
+  return Varied{static_cast<std::size_t>(found - names.begin()),
+                equals == std::string::npos ? std::nullopt : std::optional(text.substr(equals + 1))};
 }
 
 }  // namespace impact_damper::cli

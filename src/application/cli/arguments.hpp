@@ -6,18 +6,22 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <initializer_list>
 #include <map>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "impact_damper/analysis/parallel.hpp"
 #include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/base/errors.hpp"
-#include "impact_damper/io/json_reader.hpp"
+#include "impact_damper/base/number_text.hpp"
+#include "impact_damper/base/text.hpp"
 
 namespace impact_damper::cli {
 
@@ -41,15 +45,26 @@ class Arguments {
   std::optional<double> number(const std::string& option, NumberRange range = {});
   std::optional<std::int64_t> whole_number(const std::string& option, NumberRange range = {});
   std::optional<std::size_t> word(const std::string& option, const std::vector<std::string_view>& words);
+  // Rejects as well that it is not given.
+  std::optional<std::size_t> required_word(const std::string& option,
+                                           const std::vector<std::string_view>& words);
   // Returns a value of an enumeration whose words name_of(value) gives.
   template <typename Enum>
   Enum choice(const std::string& option, std::initializer_list<Enum> allowed, Enum otherwise) {
     const std::optional<std::size_t> index = word(option, words_of(allowed));
     return index ? allowed.begin()[*index] : otherwise;
   }
+  // Sets `value` if the option is given and valid.
+  void read(const std::string& option, double& value, NumberRange range = {});
+  void read(const std::string& option, std::optional<double>& value, NumberRange range = {});
+  void read(const std::string& option, std::int64_t& value, NumberRange range = {});
+  // Returns the file of an option, or rejects that it is not given: "must be given: WHAT".
+  std::optional<std::string> required_file(const std::string& option, const std::string& what);
+  // Returns the files of an argument and those after the named arguments, which are no option with many
+  // values: that would take "[]" for an empty list. Throws UsageError for an unknown option among them.
+  std::vector<std::string> files(const std::string& argument);
   bool offers(const std::string& option) const { return options_.contains(option); }
   bool given(const std::string& option) const { return !texts(option).empty(); }
-  const std::vector<std::string>& more() const { return more_; }
   bool flag(const std::string& option);  // given, once and without a value
   // Rejects an output that is one of these files, which it would overwrite.
   void reject_overwriting(const std::string& option, const std::optional<std::string>& output,
@@ -69,11 +84,69 @@ class Arguments {
 // Returns --threads N, an option of every command that simulates more than one scene.
 Threads threads_of(Arguments& arguments);
 
-// Reads the numbers A:B:N of `text`, for options that ask for samples: two finite numbers and a count.
+// Returns the parts of `text` between these characters, at least one: of "a,,b" "a", "" and "b".
+std::vector<std::string_view> parts_of(std::string_view text, char between = ',');
+// Returns the words with `between` between each two; none of them is empty.
+template <class Words>
+std::string joined(const Words& words, std::string_view between) {
+  std::string text;
+  for (const auto& word : words) text.append(text.empty() ? "" : between).append(word);
+  return text;
+}
+// Returns the text that each element has, by a member or a function.
+template <class Elements, class Text>
+std::vector<std::string_view> texts_of(const Elements& elements, Text text) {
+  std::vector<std::string_view> texts;
+  texts.reserve(std::size(elements));
+  for (const auto& element : elements) texts.push_back(std::invoke(text, element));
+  return texts;
+}
+// Returns ", did you mean WORD?", or "" if none of these words is meant.
+std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known);
+
+// A text with a place {} for each of these values.
+template <class... Values>
+struct Pattern {
+  std::string_view text;
+  consteval Pattern(const char* literal) : text(literal) {
+    std::size_t places = 0;
+    for (std::size_t at = 0; (at = text.find("{}", at)) != std::string_view::npos; at += 2) ++places;
+    if (places != sizeof...(Values)) throw std::invalid_argument("a place for each value");
+  }
+};
+std::string with_values(std::string_view pattern, const std::vector<std::string>& values);
+template <class Value>
+std::string value_text(const Value& value) {
+  if constexpr (std::is_floating_point_v<Value>)
+    return number_text(value);
+  else if constexpr (std::is_integral_v<Value>)
+    return std::to_string(value);
+  else
+    return std::string(value);
+}
+// Returns the pattern, a literal, with the values in its places: texts, and numbers by number_text().
+template <class... Values>
+std::string filled(Pattern<std::type_identity_t<Values>...> pattern, const Values&... values) {
+  return with_values(pattern.text, {value_text(values)...});
+}
+
+// Reads the numbers A:B:..., or with another character between. Absent unless all are finite numbers.
+std::optional<std::vector<double>> parse_numbers(std::string_view text, char between = ':');
+// Reads A:B:N of options that ask for samples: two finite numbers and a count.
 struct Triple {
   double first = 0, second = 0;
   std::int64_t count = 0;
 };
 std::optional<Triple> parse_triple(std::string_view text);
+
+// NAME=VALUES, the text of every option that gives a number of a scene several values: --vary, --tolerance.
+struct Varied {
+  std::size_t index = 0;              // of the name in `names`
+  std::optional<std::string> values;  // the text after =; absent without one
+};
+// Reads the text. Absent, and noted, unless `text` names one of `names` ('-' counts as '_').
+std::optional<Varied> varied_of(Arguments& arguments, const std::string& text,
+                                const std::vector<std::string_view>& names,
+                                const std::string& option = "--vary");
 
 }  // namespace impact_damper::cli

@@ -8,16 +8,10 @@
 #include "application/reproduction/scene_runs.hpp"
 #include "application/sweeps/plan.hpp"
 #include "application/sweeps/sweep_table.hpp"
-#include "arguments.hpp"
-#include "commands.hpp"
-#include "impact_damper/base/errors.hpp"
-#include "impact_damper/base/text.hpp"
-#include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/responses/response_file.hpp"
-#include "project_files.hpp"
 #include "scene_arguments.hpp"
 
 namespace impact_damper::cli {
@@ -72,25 +66,12 @@ constexpr std::array<Reader, 10> readers{
      {"claims", [](const std::string& file, const fs::path&) { read_claims(file); }},
      {"manifest", [](const std::string& file, const fs::path&) { read_manifest(file); }}}};
 
-// Returns the files, which are no option with many values: that would take "[]" for an empty list.
-std::vector<std::string> files_of(Arguments& arguments) {
-  std::vector<std::string> files;
-  if (const auto first = arguments.file("FILE")) files.push_back(*first);
-  for (const std::string& more : arguments.more()) {
-    if (more.starts_with('-')) throw UsageError({Problem{"", "unknown argument " + in_quotes(more)}});
-    files.push_back(more);
-  }
-  return files;
-}
+std::vector<std::string_view> kinds() { return texts_of(readers, &Reader::kind); }
 
 int check(Arguments& arguments) {
-  const std::vector<std::string> files = files_of(arguments);
-  const fs::path scenes = arguments.file("--scenes").value_or(project_file("data/scenes"));
-  std::vector<std::string_view> kinds;
-  kinds.reserve(readers.size());
-  for (const Reader& reader : readers) kinds.push_back(reader.kind);
-  if (!arguments.given("KIND")) arguments.reject("KIND", "must be given: " + listed(kinds, "or"));
-  const std::optional<std::size_t> kind = arguments.word("KIND", kinds);
+  const std::vector<std::string> files = arguments.files("FILE");
+  const fs::path scenes = scenes_folder(arguments);
+  const std::optional<std::size_t> kind = arguments.required_word("KIND", kinds());
   if (arguments.given("KIND") && !arguments.given("FILE"))
     arguments.reject("FILE", "must be given, one or several");
   arguments.finish();
@@ -113,22 +94,23 @@ int check(Arguments& arguments) {
 }  // namespace
 
 Command check_command() {
-  Command command{.name = "check", .description = "Read files strictly and say all that is wrong with them."};
-  command.options = {
-      {"KIND", "scene|run|response|plan|sweep|design|comparison|catalogue|claims|manifest", "what they are"},
-      input_option("FILE", "", "one or several"),
-      scenes_option()};
-  command.takes_more = true;
-  command.footer =
-      "The same is checked whenever a file is read, but for this: a run or a response must agree with\n"
-      "itself, and a run with the scene that it is named after, if --scenes has one. A sweep is given by\n"
-      "its table, CSV, beside which FILE.json must be. Designs and comparisons are not read by any command:\n"
-      "their digest shows whether they are as they were written. data/schema/ holds JSON Schemas.\n\n"
-      "Examples:\n"
-      "  impact-damper check scene data/scenes/*.json\n"
-      "  impact-damper check run mine.json";
-  command.act = check;
-  return command;
+  return {
+      .name = "check",
+      .description = "Read files strictly and say all that is wrong with them.",
+      .options = {{"KIND", joined(kinds(), "|"), "what they are"},
+                  input_option("FILE", "", "one or several"),
+                  scenes_option()},
+      .footer =
+          R"(The same is checked whenever a file is read, but for this: a run or a response must agree with
+itself, and a run with the scene that it is named after, if --scenes has one. A sweep is given by
+its table, CSV, beside which FILE.json must be. Designs and comparisons are not read by any command:
+their digest shows whether they are as they were written. data/schema/ holds JSON Schemas.
+
+Examples:
+  impact-damper check scene data/scenes/*.json
+  impact-damper check run mine.json)",
+      .act = check,
+      .takes_more = true};
 }
 
 }  // namespace impact_damper::cli

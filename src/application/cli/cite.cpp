@@ -3,14 +3,10 @@
 #include <filesystem>
 
 #include "application/reproduction/manifest.hpp"
-#include "arguments.hpp"
 #include "commands.hpp"
-#include "embedded.hpp"
 #include "impact_damper/engine.hpp"
-#include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/provenance.hpp"
-#include "project_files.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -48,15 +44,14 @@ std::string set_swhid(std::string_view swhid) {
 // this program's: they are not known for another version's manifest, nor for a program built from modified
 // sources.
 std::string entry(const Manifest& manifest, const std::string& note) {
-  std::string authors;
-  for (const std::string& author : manifest.authors)
-    authors += (authors.empty() ? "" : " and ") + braced(author);
+  std::vector<std::string> authors;
+  for (const std::string& author : manifest.authors) authors.push_back(braced(author));
   std::string published = "Software, version " + manifest.version;
   if (provenance().version == manifest.version && !provenance().tree.empty())
     published += ", commit " + std::string(provenance().commit) + ", " +
                  set_swhid("swh:1:dir:" + std::string(provenance().tree));
   std::string text = "@misc{impact-damper-" + manifest.version + ",\n";
-  text += "  author = {" + authors + "},\n";
+  text += "  author = {" + joined(authors, " and ") + "},\n";
   text += "  title = {" + braced(manifest.title) + "},\n";
   text += "  howpublished = {" + published + "},\n";
   text += "  year = {" + std::to_string(manifest.year) + "}";
@@ -121,16 +116,13 @@ std::string why_not(const Manifest& manifest, const Stamp& stamp, const std::str
                      : " (what was drawn from other data, such as one's own scene, is in none), got ";
   text += in_quotes(stamp.digits);
   if (of_another) text += " of version " + *stamp.version;
-  if (const auto meant = nearest(stamp.digits, known)) text += ", did you mean " + std::string(*meant) + "?";
-  return text;
+  return text + did_you_mean(stamp.digits, known);
 }
 
 // Returns a manifest without figures: program and paper by paper/facts.json as it was when the program was
 // built.
 Manifest built_in() {
-  const auto& files = embedded_files();
-  const auto facts = std::ranges::find(files, "facts.json", &EmbeddedFile::name);
-  JsonDocument document = JsonDocument::parse("paper/facts.json", std::string(facts->text));
+  JsonDocument document = JsonDocument::parse("paper/facts.json", std::string(embedded_text("facts.json")));
   ObjectReader root = document.root(), paper = root.required_object("paper");
   Manifest manifest;
   manifest.version = provenance().version;
@@ -158,9 +150,8 @@ int cite(Arguments& arguments) {
 
   const bool of_a_figure = arguments.given("--figure") || stamp;
   const Manifest manifest = of_a_figure || arguments.given("--manifest") ? read_manifest(file) : built_in();
-  std::vector<std::string_view> numbers;
-  for (const CitedFigure& figure : manifest.figures) numbers.push_back(figure.number);
-  const std::optional<std::size_t> number = arguments.word("--figure", numbers);
+  const std::optional<std::size_t> number =
+      arguments.word("--figure", texts_of(manifest.figures, &CitedFigure::number));
   std::vector<Stamped> figures;
   if (stamp) figures = find_stamped(manifest, stamp->digits);
   if (stamp && figures.empty()) arguments.reject("--stamp", why_not(manifest, *stamp, file));
@@ -193,26 +184,26 @@ int cite(Arguments& arguments) {
 }  // namespace
 
 Command cite_command() {
-  Command command{.name = "cite",
-                  .description = "Say how to cite the program, and what a figure was made from."};
-  command.options = {
-      {"--figure", "NUMBER", "what figure NUMBER of the manifest was made from, with which\ncommands"},
-      {"--stamp", "TEXT", "the same for the figure that carries this in its lower right corner"},
-      input_option("--manifest", "FILE",
-                   "what the figures were made from; default data/reference/manifest.json")};
-  command.footer =
-      "What is printed is one BibTeX entry with version, commit and the Software Heritage identifiers "
-      "(SWHID) of "
-      "the\nsource tree and of the table; what a figure was made from stands above it as a comment. A stamp "
-      "consists of\nthe first digits of the SHA-256 of the table that is drawn (of the script if there is no "
-      "table) and of the\nversion: it identifies the data, not the looks of the picture. --stamp finds the "
-      "tables of this version, by\nany engine.\n\n"
-      "Examples:\n"
-      "  impact-damper cite >> references.bib\n"
-      "  impact-damper cite --figure 8\n"
-      "  impact-damper cite --stamp \"1a2b3c4d · 0.1.0\"";
-  command.act = cite;
-  return command;
+  return {
+      .name = "cite",
+      .description = "Say how to cite the program, and what a figure was made from.",
+      .options = {{"--figure", "NUMBER",
+                   "what figure NUMBER of the manifest was made from, with which\ncommands"},
+                  {"--stamp", "TEXT", "the same for the figure that carries this in its lower right corner"},
+                  input_option("--manifest", "FILE",
+                               "what the figures were made from; default data/reference/manifest.json")},
+      .footer =
+          R"(What is printed is one BibTeX entry with version, commit and the Software Heritage identifiers (SWHID) of the
+source tree and of the table; what a figure was made from stands above it as a comment. A stamp consists of
+the first digits of the SHA-256 of the table that is drawn (of the script if there is no table) and of the
+version: it identifies the data, not the looks of the picture. --stamp finds the tables of this version, by
+any engine.
+
+Examples:
+  impact-damper cite >> references.bib
+  impact-damper cite --figure 8
+  impact-damper cite --stamp "1a2b3c4d · 0.1.0")",
+      .act = cite};
 }
 
 }  // namespace impact_damper::cli

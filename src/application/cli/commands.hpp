@@ -1,4 +1,4 @@
-// The program's subcommands: one function and one file each.
+// The program's subcommands: one function for each, and what they are made of.
 //
 // A command says what it is as data: name, options and what it does with them. Only main.cpp sees the parser,
 // CLI11, whose headers take seconds to compile in each file that includes them. To add a command: declare it
@@ -6,10 +6,14 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
 #include "arguments.hpp"
+#include "output.hpp"
+#include "progress.hpp"
+#include "project_files.hpp"
 
 namespace impact_damper::cli {
 
@@ -20,22 +24,40 @@ struct Option {
   std::string name{};  // "--runs", "-o,--output"; of a positional argument without dashes, "FILE"
   std::string type{};  // of the value, "FILE", or the words it is one of, "json|csv"
   std::string help{};
-  std::string group{};  // its heading in --help; empty: "Options"
   Takes takes = Takes::value;
+  std::string group{};  // its heading in --help; empty: "Options"
 };
 using Options = std::vector<Option>;
-inline Option input_option(const char* name, const char* type, const char* help) {
-  return {name, type, help, {}, Option::Takes::input};
+inline Option input_option(const std::string& name, const std::string& type, const std::string& help) {
+  return {name, type, help, Option::Takes::input};
+}
+inline Option repeated_option(const std::string& name, const std::string& type, const std::string& help) {
+  return {name, type, help, Option::Takes::repeated_value};
+}
+inline Option flag_option(const std::string& name, const std::string& help) {
+  return {name, {}, help, Option::Takes::nothing};
+}
+
+// Returns the options under this heading.
+inline Options in_group(const std::string& heading, Options options) {
+  for (Option& option : options) option.group = heading;
+  return options;
+}
+// Returns the options of all these lists.
+inline Options together(std::initializer_list<Options> lists) {
+  Options all;
+  for (const Options& list : lists) all.insert(all.end(), list.begin(), list.end());
+  return all;
 }
 
 struct Command {
   std::string name{}, description{};
   Options options{};
-  std::string footer{};     // below the options in --help
-  bool takes_more = false;  // more inputs after the named arguments: Arguments::more()
+  std::string footer{};  // below the options in --help
   // Returns 0, or 1 if a check failed. Throws UsageError (exit code 2), InputError (3), NumericalError (4),
   // IoError (5).
   std::function<int(Arguments&)> act{};
+  bool takes_more = false;  // more inputs after the named arguments: Arguments::files()
 };
 
 using Commands = std::vector<Command>;
@@ -57,8 +79,12 @@ Command series_command();
 Command sweep_command();
 Command verify_command();
 
-// Options that several commands have.
+// `design --dampers`: designs several dampers for a range of amplitudes.
+int design_dampers(Arguments& arguments);
+
+// Options that several commands have, and what is given by them.
 Option threads_option();
 Option scenes_option();  // the folder of the scenes that runs are named after
+std::string scenes_folder(Arguments& arguments);
 
 }  // namespace impact_damper::cli

@@ -5,14 +5,8 @@
 #include <iostream>
 
 #include "application/measured/comparison.hpp"
-#include "commands.hpp"
 #include "drawing.hpp"
-#include "impact_damper/base/number_text.hpp"
-#include "impact_damper/io/file_output.hpp"
-#include "output.hpp"
-#include "progress.hpp"
 #include "scene_arguments.hpp"
-#include "text_table.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -26,72 +20,64 @@ std::vector<FitParameter> fitted_of(Arguments& arguments) {
   std::vector<FitParameter> parameters;
   if (*list == "none") return parameters;
   const std::vector<std::string_view> names = words_of<FitParameter>();
-  for (std::size_t begin = 0; begin <= list->size();) {
-    const std::size_t end = std::min(list->find(',', begin), list->size());
-    const std::string_view name = std::string_view(*list).substr(begin, end - begin);
+  for (const std::string_view name : parts_of(*list)) {
     const auto* const found = std::ranges::find(all_of<FitParameter>, name, name_of<FitParameter>);
     if (found == all_of<FitParameter>.end()) {
-      const auto meant = nearest(name, names);
       arguments.reject("--fit", "must be none or " + listed(names, "or") + ", with commas between, got " +
-                                    in_quotes(name) +
-                                    (meant ? ", did you mean " + std::string(*meant) + "?" : ""));
+                                    in_quotes(name) + did_you_mean(name, names));
     } else if (std::ranges::find(parameters, *found) != parameters.end()) {
       arguments.reject("--fit", "names " + std::string(name) + " twice");
     } else {
       parameters.push_back(*found);
     }
-    begin = end + 1;
   }
   std::ranges::sort(parameters);
   return parameters;
 }
 
 std::string text_of(double value, int digits = 3) { return rounded_text(value, digits); }
+std::string percent_of(double share) { return text_of(100 * share, 2) + " %"; }
 
 std::string summary_of(const Comparison& c) {
   const Reduction& r = c.reduction;
-  const std::string unit(unit_of(c.record.quantity));
-  std::string text = fs::path(c.record_name).filename().string() + ": " +
-                     std::string(name_of(c.record.quantity)) + ", " + std::to_string(r.samples) +
-                     " samples in " + text_of(r.duration) + " s, " + text_of(r.sampling_rate, 4) + " Hz\n";
-  text += "  " + std::to_string(r.time.size()) + " half cycles at " + text_of(r.frequency, 4) + " Hz, from " +
-          text_of(r.amplitude.front()) + " to " + text_of(r.amplitude.back()) + " mm" +
-          (r.ends_in_noise ? ", below which noise is too strong" : "") + "\n";
-  text += "  noise " + text_of(r.noise) + " " + unit + ", offset " + text_of(r.offset) + " " + unit +
-          ", drift " + text_of(r.drift) + " " + unit + "; left out: " + std::to_string(r.clipped) +
-          " half cycles clipped or flat, " + std::to_string(r.in_gaps) +
-          " at its ends or with samples missing, " + std::to_string(r.unclear) + " unclear\n";
-  text +=
-      "  the scene: " + text_of(c.lowest_frequency, 4) + " to " + text_of(c.highest_frequency, 4) + " Hz\n";
+  const std::string_view unit = unit_of(c.record.quantity);
+  std::string text =
+      filled("{}: {}, {} samples in {} s, {} Hz\n", fs::path(c.record_name).filename().string(),
+             name_of(c.record.quantity), r.samples, text_of(r.duration), text_of(r.sampling_rate, 4)) +
+      filled("  {} half cycles at {} Hz, from {} to {} mm{}\n", r.time.size(), text_of(r.frequency, 4),
+             text_of(r.amplitude.front()), text_of(r.amplitude.back()),
+             r.ends_in_noise ? ", below which noise is too strong" : "") +
+      filled("  noise {} {}, offset {} {}, drift {} {}; left out: ", text_of(r.noise), unit,
+             text_of(r.offset), unit, text_of(r.drift), unit) +
+      filled("{} half cycles clipped or flat, {} at its ends or with samples missing, {} unclear\n",
+             r.clipped, r.in_gaps, r.unclear) +
+      filled("  the scene: {} to {} Hz\n", text_of(c.lowest_frequency, 4), text_of(c.highest_frequency, 4));
   if (!c.bins.empty()) {
-    std::vector<std::vector<std::string>> rows{{"amplitude, mm", "loss factor", "simulated"}};
+    Rows rows{{"amplitude, mm", "loss factor", "simulated"}};
     if (c.fit) rows[0].insert(rows[0].end(), {"fitted", "scatter"});
     for (std::size_t k = 0; k < c.bins.size(); ++k) {
       const LossBin& bin = c.bins[k];
       rows.push_back({text_of(bin.upper) + " to " + text_of(bin.lower),
-                      text_of(bin.loss) + " +- " + text_of(100 * bin.error, 2) + " %",
+                      text_of(bin.loss) + " +- " + percent_of(bin.error),
                       k < c.given.bins.size() ? text_of(c.given.bins[k]) : "-"});
-      if (c.fit) {
-        rows.back().push_back(text_of(c.fit->loss[k]));
-        rows.back().push_back(text_of(100 * c.fit->scatter[k], 2) + " %");
-      }
+      if (c.fit)
+        rows.back().insert(rows.back().end(), {text_of(c.fit->loss[k]), percent_of(c.fit->scatter[k])});
     }
     text += "\n" + aligned(rows);
   }
   if (c.fit) {
-    std::vector<std::vector<std::string>> rows{{"number", "scene", "best", "90 % interval", "searched"}};
+    Rows rows{{"number", "scene", "best", "90 % interval", "searched"}};
     for (const FittedParameter& each : c.fit->parameters) {
       const auto range = [&](double low, double high) {
         return with_unit(text_of(low) + " to " + text_of(high), unit_of(each.parameter));
       };
+      const auto [from, to] = std::minmax(each.searched_from, each.searched_to);
       rows.push_back({std::string(name_of(each.parameter)), text_of(value_of(c.given.scene, each.parameter)),
-                      text_of(each.best), range(each.low, each.high),
-                      range(std::min(each.searched_from, each.searched_to),
-                            std::max(each.searched_from, each.searched_to))});
+                      text_of(each.best), range(each.low, each.high), range(from, to)});
     }
-    text += "\n" + aligned(rows) + "chi square " + text_of(c.fit->chi_square) + " with " +
-            std::to_string(c.fit->degrees) + " degrees of freedom, " + std::to_string(c.fit->runs) +
-            " runs\n";
+    text += "\n" + aligned(rows) +
+            filled("chi square {} with {} degrees of freedom, {} runs\n", text_of(c.fit->chi_square),
+                   c.fit->degrees, c.fit->runs);
   }
   if (!c.remarks.empty()) text += "\n";
   for (const std::string& each : c.remarks) text += each + "\n";
@@ -135,33 +121,27 @@ Drawing drawing_of(const Comparison& c, const std::string& name, const std::stri
     }
     return all;
   };
-  Columns measured;
-  if (is_loss) {
-    add_curve(measured, c.loss.amplitude, c.loss.eta);
-  } else {
-    add_curve(measured, c.reduction.time, c.reduction.amplitude);
-  }
-  add("measured", "measured", measured);
+  add("measured", "measured",
+      is_loss ? Columns{c.loss.amplitude, c.loss.eta, {}}
+              : Columns{c.reduction.time, c.reduction.amplitude, {}});
   add("given", "the scene, simulated", simulated(c.given));
   if (c.fitted) add("fitted", "fitted", simulated(*c.fitted));
   return drawing;
 }
 
 int compare(Arguments& arguments) {
-  const auto measured = arguments.file("--measured");
-  if (!measured)
-    arguments.reject("--measured", "must be given: the record, a CSV file with the columns t_s and x_mm");
+  const auto measured =
+      arguments.required_file("--measured", "the record, a CSV file with the columns t_s and x_mm");
   const auto scene_name = arguments.text("--scene");
   if (!scene_name) arguments.reject("--scene", "must be given: the scene that the record is compared with");
   ComparisonOptions options;
   options.fit.parameters = fitted_of(arguments);
   options.fit.threads = threads_of(arguments);
   const Engine engine = engine_of(arguments);
-  const auto output = arguments.file("--output"), figures = arguments.file("--figures");
+  const auto output = arguments.file("--output");
   reject_other_endings(arguments, "--output", output, {Format::json});
   arguments.reject_overwriting("--output", output, {scene_name.value_or(""), measured.value_or("")});
-  if (figures && !fs::is_directory(*figures))
-    arguments.reject("--figures", "must be an existing folder, got " + in_quotes(*figures));
+  const auto figures = figures_folder(arguments);
   arguments.finish();
   const SceneFile file = read_scene_file(*scene_name);
   require_one_damper(file.scene, *scene_name);
@@ -177,19 +157,14 @@ int compare(Arguments& arguments) {
   const MeasuredRecord record = read_measured_record(*measured);
   ProgressOnStderr progress("compare");
   const Comparison comparison = saying_options([&] {
-    return compared(*measured, record, *scene_name, *file.in_units, engine, options,
-                    [&](const std::string& doing) { progress(doing); });
+    return compared(*measured, record, *scene_name, *file.in_units, engine, options, std::ref(progress));
   });
-  if (figures) {
-    DrawingBoard board;
-    for (const bool is_loss : {false, true}) {
-      const Drawing drawing =
-          is_loss ? drawing_of(comparison, "measured_loss", "Loss factor, measured and simulated", true)
-                  : drawing_of(comparison, "measured_decay", "Decay, measured and simulated", false);
-      progress("drawing figure " + drawing.name);
-      write_file(fs::path(*figures) / (drawing.name + ".svg"), board.draw(drawing));
-    }
-  }
+  if (figures)
+    write_figures(
+        *figures,
+        drawn({drawing_of(comparison, "measured_decay", "Decay, measured and simulated", false),
+               drawing_of(comparison, "measured_loss", "Loss factor, measured and simulated", true)},
+              progress));
   if (output) write_output(output, comparison_text(comparison));
   if (!is_standard_output(output)) write_standard_output(summary_of(comparison));
   return 0;
@@ -198,33 +173,30 @@ int compare(Arguments& arguments) {
 }  // namespace
 
 Command compare_command() {
-  Command command{
+  return {
       .name = "compare",
       .description =
-          "Compare a measured free decay with the simulation of a scene, and fit the scene's numbers to it."};
-  command.options = {
-      input_option("--measured", "FILE",
-                   "the record, CSV: time t_s or t_ms; displacement x_mm, x_m or x_um, or\nacceleration "
-                   "a_m_per_s2, a_mm_per_s2 or a_g"),
-      input_option("--scene", "FILE", "the scene, in units and without a force"),
-      {"--fit", "LIST",
-       "what is fitted, with commas between: restitution, damping_ratio, clearance\n(these are the default), "
-       "secondary_mass; or none"},
-      {"--figures", "FOLDER",
-       "draw amplitude over time and loss factor over amplitude there, as\nmeasured_decay.svg and "
-       "measured_loss.svg"},
-      {"-o,--output", "FILE", "write all numbers there, as JSON"},
-      threads_option()};
-  for (const Option& option : engine_options()) command.options.push_back(option);
-  command.footer =
-      "A decay is chaotic: runs that hardly differ scatter. The fit simulates some 10 000 decays with other "
-      "numbers, and "
-      "its\nintervals allow for the scatter as well as for the record's noise (docs/compare.md).\n\n"
-      "Example:\n"
-      "  impact-damper compare --measured decay.csv --scene data/examples/mast.json --figures . -o "
-      "comparison.json";
-  command.act = compare;
-  return command;
+          "Compare a measured free decay with the simulation of a scene, and fit the scene's numbers to it.",
+      .options = together({{input_option("--measured", "FILE",
+                                         "the record, CSV: time t_s or t_ms; displacement x_mm, x_m or x_um, "
+                                         "or\nacceleration a_m_per_s2, a_mm_per_s2 or a_g"),
+                            input_option("--scene", "FILE", "the scene, in units and without a force"),
+                            {"--fit", "LIST",
+                             "what is fitted, with commas between: restitution, damping_ratio, "
+                             "clearance\n(these are the default), secondary_mass; or none"},
+                            {"--figures", "FOLDER",
+                             "draw amplitude over time and loss factor over amplitude there, "
+                             "as\nmeasured_decay.svg and measured_loss.svg"},
+                            {"-o,--output", "FILE", "write all numbers there, as JSON"},
+                            threads_option()},
+                           engine_options()}),
+      .footer =
+          R"(A decay is chaotic: runs that hardly differ scatter. The fit simulates some 10 000 decays with other numbers, and its
+intervals allow for the scatter as well as for the record's noise (docs/compare.md).
+
+Example:
+  impact-damper compare --measured decay.csv --scene data/examples/mast.json --figures . -o comparison.json)",
+      .act = compare};
 }
 
 }  // namespace impact_damper::cli

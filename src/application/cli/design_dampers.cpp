@@ -1,18 +1,11 @@
-#include "design_dampers.hpp"
-
+// `design --dampers`: finds several dampers for a range of amplitudes.
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "application/sweeps/damper_set_design.hpp"
 #include "application/sweeps/lightest_design.hpp"
-#include "impact_damper/base/number_text.hpp"
-#include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/json_writer.hpp"
-#include "output.hpp"
-#include "progress.hpp"
 #include "scene_arguments.hpp"
-#include "text_table.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -45,7 +38,7 @@ void read_tolerances(Arguments& arguments, DamperSetQuestion& question) {
 Asked asked_of(Arguments& arguments) {
   Asked asked;
   asked.file = scene_of(arguments, Stops::ignored);
-  require_one_damper(asked.file.scene, arguments.file("--scene").value_or(""));
+  require_one_damper(asked.file.scene, scene_name_of(arguments));
   reject_options_beside_units(arguments, asked.file, "");
   for (const char* option : {"--within", "--share", "--clearance", "--neighbours", "--seed", "--write-plan"})
     if (arguments.given(option)) arguments.reject(option, "is not for several dampers, --dampers");
@@ -73,16 +66,13 @@ Asked asked_of(Arguments& arguments) {
   return asked;
 }
 
-double in_three_digits(double value) { return rounded_to(value, 3); }
-std::string readable(double value) { return number_text(in_three_digits(value)); }
-
 // Returns the scene with these dampers as the text of its file, in units if the question was.
 std::string scene_file_text(const Asked& asked, const DamperSet& set) {
   const DamperSetQuestion& question = asked.question;
   JsonWriter out("scene");
   out.open_object(JsonWriter::Layout::lines);
-  out.field("description", std::to_string(set.dampers.size()) + " dampers for amplitudes from " +
-                               readable(question.release) + " to " + readable(question.to));
+  out.field("description", filled("{} dampers for amplitudes from {} to {}", set.dampers.size(),
+                                  readable(question.release), readable(question.to)));
   if (asked.file.in_units) {
     SceneInUnits scene = *asked.file.in_units;
     scene.dampers.clear();
@@ -115,57 +105,36 @@ std::string text_of(const Asked& asked, const DamperSet& set) {
   const bool in_units = asked.file.in_units.has_value();
   const std::string length = in_units ? " mm" : "", mass = in_units ? " kg" : "";
   const auto least = [](const std::vector<double>& values) { return *std::ranges::min_element(values); };
-  std::string text = "released from " + readable(question.release) + length + ", " +
-                     readable(question.mass_ratio * asked.mass) + mass + " together, restitution " +
-                     readable(question.restitution) + " +-" + readable(question.restitution_off) +
-                     ", clearances +-" + readable(100 * question.clearance_off) + " %\n\n";
-  std::vector<std::vector<std::string>> rows{{"damper", "clearance", "mass"},
-                                             {"", in_units ? "mm" : "", in_units ? "kg" : ""}};
+  std::string text = filled("released from {}{}, {}{} together, restitution {} +-{}, clearances +-{} %\n\n",
+                            readable(question.release), length, readable(question.mass_ratio * asked.mass),
+                            mass, readable(question.restitution), readable(question.restitution_off),
+                            readable(100 * question.clearance_off));
+  Rows rows{{"damper", "clearance", "mass"}, {"", in_units ? "mm" : "", in_units ? "kg" : ""}};
   for (std::size_t j = 0; j < set.dampers.size(); ++j)
     rows.push_back({std::to_string(j + 1), number_text(set.dampers[j].clearance),
                     readable(set.dampers[j].mass_ratio * asked.mass)});
   text += aligned(rows) + "\n";
   rows = {{"amplitude", "loss factor", "", "dampers that are off", "", ""},
           {in_units ? "mm" : "", "if they add", "run", "each at its worst, if they add", "mean",
-           "least of " + std::to_string(set_draws)}};
+           filled("least of {}", set_draws)}};
   for (std::size_t i = 0; i + 1 < set.edges.size(); ++i)
     rows.push_back({readable(std::sqrt(set.edges[i] * set.edges[i + 1])), readable(set.expected[i]),
                     readable(set.run.mean[i]), readable(set.worst[i]), readable(set.varied.mean[i]),
                     readable(set.varied.low[i])});
   text += aligned(rows) + "\n";
-  text += "From " + readable(set.edges.front()) + " to " + readable(set.edges.back()) + length +
-          " the loss factor is " + readable(least(set.run.mean)) + " or more, by the mean of " +
-          std::to_string(set_releases) + " releases; of " + std::to_string(set_draws) +
-          " sets whose dampers are off by their mean " + readable(least(set.varied.mean)) +
-          " or more, in the worst of them " + readable(least(set.varied.low)) + ".\n";
+  text += filled(
+      "From {} to {}{} the loss factor is {} or more, by the mean of {} releases; of {} sets whose "
+      "dampers are off by their mean {} or more, in the worst of them {}.\n",
+      readable(set.edges.front()), readable(set.edges.back()), length, readable(least(set.run.mean)),
+      set_releases, set_draws, readable(least(set.varied.mean)), readable(least(set.varied.low)));
   if (set.one)
-    text += "One damper of that mass, designed in the same way, has a clearance of " +
-            readable(set.one->clearance) + length + " and a loss factor of " + readable(set.one->least) +
-            " or more.\n";
-  if (std::int64_t(set.dampers.size()) < question.count)
-    text += "Of " + std::to_string(question.count) + " clearances " +
-            std::to_string(question.count - std::int64_t(set.dampers.size())) + " got no mass.\n";
+    text += filled(
+        "One damper of that mass, designed in the same way, has a clearance of {}{} and a loss "
+        "factor of {} or more.\n",
+        readable(set.one->clearance), length, readable(set.one->least));
+  const auto without_mass = question.count - std::int64_t(set.dampers.size());
+  if (without_mass > 0) text += filled("Of {} clearances {} got no mass.\n", question.count, without_mass);
   return text;
-}
-
-// Reports problems of the question as those of options.
-[[noreturn]] void reject_question(const std::vector<Problem>& problems) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> options{
-      {{"release", "--from"},
-       {"upper", "--upper"},
-       {"to", "--to"},
-       {"mass_ratio", "--secondary-mass"},
-       {"count", "--dampers"},
-       {"clearance_off", "--tolerance"},
-       {"restitution_off", "--tolerance"}}};
-  std::vector<Problem> named;
-  for (const Problem& problem : problems) {
-    const auto* const found =
-        std::ranges::find(options, problem.field, [](const auto& each) { return each.first; });
-    named.push_back(found == options.end() ? Problem{"--scene", problem.field + ' ' + problem.message}
-                                           : Problem{std::string(found->second), problem.message});
-  }
-  throw UsageError(std::move(named));
 }
 
 }  // namespace
@@ -173,16 +142,21 @@ std::string text_of(const Asked& asked, const DamperSet& set) {
 int design_dampers(Arguments& arguments) {
   const Asked asked = asked_of(arguments);
   const Threads threads = threads_of(arguments);
-  const auto output = arguments.file("--output");
-  arguments.reject_overwriting("--output", output, {arguments.text("--scene").value_or("")});
-  reject_other_endings(arguments, "--output", output, {Format::json});
+  const auto output = output_of(arguments, "--output", {Format::json}, {scene_name_of(arguments)});
   arguments.finish();
-  if (const auto problems = problems_of(asked.question); !problems.empty()) reject_question(problems);
+  if (const auto problems = problems_of(asked.question); !problems.empty())
+    reject_as_options(problems, {{"release", "--from"},
+                                 {"upper", "--upper"},
+                                 {"to", "--to"},
+                                 {"mass_ratio", "--secondary-mass"},
+                                 {"count", "--dampers"},
+                                 {"clearance_off", "--tolerance"},
+                                 {"restitution_off", "--tolerance"}});
   prepare_output(output);
   DamperSet set;
   {
     ProgressOnStderr progress("design");
-    set = best_damper_set(asked.question, threads, [&](const std::string& doing) { progress(doing); });
+    set = best_damper_set(asked.question, threads, std::ref(progress));
   }
   if (output) write_output(output, scene_file_text(asked, set));
   if (!is_standard_output(output)) write_standard_output(text_of(asked, set));

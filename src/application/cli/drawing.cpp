@@ -12,11 +12,10 @@
 #include <cstring>
 #include <string_view>
 
-#include "embedded.hpp"
-#include "impact_damper/base/errors.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/provenance.hpp"
+#include "project_files.hpp"
 
 extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX has it declared by the user
 
@@ -150,6 +149,27 @@ std::string DrawingBoard::draw(const Drawing& drawing) {
   if (ended.code != 0)
     throw NumericalError("figure " + drawing.name + " cannot be drawn: " + ended.complaint);
   return read_text(svg);
+}
+
+std::optional<std::string> figures_folder(Arguments& arguments) {
+  auto folder = arguments.file("--figures");
+  if (folder && !fs::is_directory(*folder))
+    arguments.reject("--figures", "must be an existing folder, got " + in_quotes(*folder));
+  return folder;
+}
+
+Svgs drawn(const std::vector<Drawing>& drawings, ProgressOnStderr& progress) {
+  Svgs svgs;
+  DrawingBoard board;
+  for (const Drawing& drawing : drawings) {
+    progress("drawing figure " + drawing.name);
+    svgs[drawing.name] = board.draw(drawing);
+  }
+  return svgs;
+}
+
+void write_figures(const std::string& folder, const Svgs& svgs) {
+  for (const auto& [name, svg] : svgs) write_file(fs::path(folder) / (name + ".svg"), svg);
 }
 
 void remove_drawing_board() noexcept {

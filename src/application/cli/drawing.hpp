@@ -3,11 +3,15 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "application/report/drawings.hpp"
+#include "arguments.hpp"
+#include "progress.hpp"
 
 namespace impact_damper::cli {
 
@@ -30,6 +34,13 @@ class DrawingBoard {
  private:
   std::filesystem::path folder_;
 };
+
+// Returns the folder of --figures, for figures as SVG. Rejects one that does not exist.
+std::optional<std::string> figures_folder(Arguments& arguments);
+
+using Svgs = std::map<std::string, std::string>;  // by the names of drawings
+Svgs drawn(const std::vector<Drawing>& drawings, ProgressOnStderr& progress);
+void write_figures(const std::string& folder, const Svgs& svgs);
 
 // For a signal handler that ends the process: ends the drawing under way and removes the board's folder.
 void remove_drawing_board() noexcept;

@@ -4,43 +4,37 @@
 #include <string>
 #include <vector>
 
-#include "arguments.hpp"
 #include "commands.hpp"
-#include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/provenance.hpp"
 
 namespace impact_damper::cli {
 namespace {
 
 // An option with its names separated.
-struct Told {
+struct Described {
   std::vector<std::string> shorts, longs;  // without dashes; neither for a positional
   std::string positional, type, meaning;
   bool takes_value = false;
 };
 
-std::vector<Told> options_of(const Command& command) {
-  std::vector<Told> all;
-  all.reserve(command.options.size());
+std::vector<Described> options_of(const Command& command) {
+  std::vector<Described> all;
   for (const Option& option : command.options) {
-    Told told{{}, {}, {}, option.type, option.help, option.takes != Option::Takes::nothing};
-    for (std::size_t begin = 0; begin < option.name.size();) {
-      const std::size_t end = std::min(option.name.find(',', begin), option.name.size());
-      const std::string name = option.name.substr(begin, end - begin);
+    Described& described = all.emplace_back(
+        Described{{}, {}, {}, option.type, option.help, option.takes != Option::Takes::nothing});
+    for (const std::string_view name : parts_of(option.name)) {
       if (name.starts_with("--"))
-        told.longs.push_back(name.substr(2));
+        described.longs.emplace_back(name.substr(2));
       else if (name.starts_with('-'))
-        told.shorts.push_back(name.substr(1));
+        described.shorts.emplace_back(name.substr(1));
       else
-        told.positional = name;
-      begin = end + 1;
+        described.positional = name;
     }
-    all.push_back(told);
   }
   return all;
 }
 
-std::vector<std::string> names_of(const Told& option) {
+std::vector<std::string> names_of(const Described& option) {
   std::vector<std::string> names;
   for (const std::string& name : option.shorts) names.push_back("-" + name);
   for (const std::string& name : option.longs) names.push_back("--" + name);
@@ -48,21 +42,10 @@ std::vector<std::string> names_of(const Told& option) {
 }
 
 // Returns the words that a value is chosen from, which its type lists: exact|restitution|cem.
-std::vector<std::string> choices(const Told& option) {
-  std::vector<std::string> words;
-  if (option.type.find('|') == std::string::npos) return words;
-  for (std::size_t begin = 0; begin <= option.type.size();) {
-    const std::size_t end = std::min(option.type.find('|', begin), option.type.size());
-    words.push_back(option.type.substr(begin, end - begin));
-    begin = end + 1;
-  }
+std::vector<std::string_view> choices(const Described& option) {
+  auto words = parts_of(option.type, '|');
+  if (words.size() == 1) words.clear();
   return words;
-}
-
-std::string joined(const std::vector<std::string>& words, const std::string& between) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
-  return text;
 }
 
 // Returns one line: the text up to the first semicolon.
@@ -102,7 +85,7 @@ std::string roff(const std::string& text) {
 
 std::string roff_options(const Command& command) {
   std::string text;
-  for (const Told& option : options_of(command)) {
+  for (const Described& option : options_of(command)) {
     const std::vector<std::string> names = names_of(option);
     text += ".TP\n.B " + roff(names.empty() ? option.positional : joined(names, ", "));
     if (option.takes_value && !option.type.empty()) text += " \\fI" + roff(option.type) + "\\fP";
@@ -122,7 +105,7 @@ std::string man_page(const Command& program, const Commands& commands) {
   text += ".SH NAME\n" + roff(name) + " \\- " + roff(program.description) + "\n.SH SYNOPSIS\n";
   for (const Command& command : commands) {
     text += ".B " + roff(name + " " + command.name) + "\n";
-    for (const Told& option : options_of(command))
+    for (const Described& option : options_of(command))
       if (!option.positional.empty()) text += "\\fI" + roff(option.positional) + "\\fP\n";
     text += "[\\fIOPTIONS\\fP]\n.br\n";
   }
@@ -141,46 +124,44 @@ std::string bash_completion(const Command& program, const Commands& commands) {
   for (const Command& command : commands) {
     names_of_commands += " " + command.name;
     std::string names, first;
-    for (const Told& option : options_of(command)) {
+    for (const Described& option : options_of(command)) {
       const std::vector<std::string> each = names_of(option);
       for (const std::string& name : each) {
         names += " " + name;
         if (choices(option).empty()) continue;
-        values += "    " + single_quoted(command.name + " " + name) +
-                  ") words=" + single_quoted(joined(choices(option), " ")) + " ;;\n";
+        values += filled("    {}) words={} ;;\n", single_quoted(command.name + " " + name),
+                         single_quoted(joined(choices(option), " ")));
       }
       if (each.empty() && first.empty()) first = joined(choices(option), " ");
     }
-    words += "    " + command.name + ") options=" + single_quoted(names.substr(1)) +
-             (first.empty() ? "" : " first=" + single_quoted(first)) + " ;;\n";
+    words += filled("    {}) options={}{} ;;\n", command.name, single_quoted(names.substr(1)),
+                    first.empty() ? "" : " first=" + single_quoted(first));
   }
-  for (const Told& option : options_of(program)) names_of_commands += " " + joined(names_of(option), " ");
-  return "# bash completion for impact-damper, by: impact-damper generate bash\n"
-         "_impact_damper() {\n"
-         "  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} "
-         "command=${COMP_WORDS[1]}\n"
-         "  local words= options= first=\n"
-         "  if [ \"$word\" = = ]; then\n"
-         "    word=\n"
-         "  elif [ \"$before\" = = ]; then\n"
-         "    before=${COMP_WORDS[COMP_CWORD - 2]}\n"
-         "  fi\n"
-         "  case $command in\n" +
-         words +
-         "  esac\n"
-         "  case \"$command $before\" in\n" +
-         values +
-         "    *)\n"
-         "      if [ \"$COMP_CWORD\" -eq 1 ]; then words=" +
-         single_quoted(names_of_commands.substr(1)) +
-         "\n"
-         "      elif [[ $word == -* ]]; then words=$options\n"
-         "      elif [ \"$COMP_CWORD\" -eq 2 ]; then words=$first\n"
-         "      fi ;;\n"
-         "  esac\n"
-         "  COMPREPLY=($(compgen -W \"$words\" -- \"$word\"))\n"
-         "}\n"
-         "complete -o default -F _impact_damper impact-damper\n";
+  for (const Described& option : options_of(program))
+    names_of_commands += " " + joined(names_of(option), " ");
+  return filled(R"(# bash completion for impact-damper, by: impact-damper generate bash
+_impact_damper() {
+  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]}
+  local words= options= first=
+  if [ "$word" = = ]; then
+    word=
+  elif [ "$before" = = ]; then
+    before=${COMP_WORDS[COMP_CWORD - 2]}
+  fi
+  case $command in
+{}  esac
+  case "$command $before" in
+{}    *)
+      if [ "$COMP_CWORD" -eq 1 ]; then words={}
+      elif [[ $word == -* ]]; then words=$options
+      elif [ "$COMP_CWORD" -eq 2 ]; then words=$first
+      fi ;;
+  esac
+  COMPREPLY=($(compgen -W "$words" -- "$word"))
+}
+complete -o default -F _impact_damper impact-damper
+)",
+                words, values, single_quoted(names_of_commands.substr(1)));
 }
 
 std::string zsh_completion(const Command& program, const Commands& commands) {
@@ -192,19 +173,17 @@ std::string zsh_completion(const Command& program, const Commands& commands) {
         "    " + single_quoted(command.name + ":" + escaped(command.description, ":\\", "\\")) + "\n";
     cases += "    " + command.name + ")\n      _arguments";
     const auto add = [&cases](const std::string& argument) {
-      cases += " \\\n        ";
-      cases += single_quoted(argument);
+      cases += " \\\n        " + single_quoted(argument);
     };
-    for (const Told& option : options_of(command)) {
-      const std::vector<std::string> words = choices(option);
+    for (const Described& option : options_of(command)) {
+      const std::vector<std::string_view> words = choices(option);
       std::string value = option.type == "FOLDER" ? "_files -/" : "_files";
       if (!words.empty()) value = "(" + joined(words, " ") + ")";
-      const std::string told = "[" + described(option.meaning) + "]";
-      std::string valued = told;
-      valued += ":" + escaped(option.type, ":\\", "\\") + ":" + value;
+      const std::string plain = "[" + described(option.meaning) + "]";
+      const std::string valued = filled("{}:{}:{}", plain, escaped(option.type, ":\\", "\\"), value);
       for (const std::string& name : names_of(option)) {
         const char* const before_value = name.starts_with("--") ? "=" : "+";
-        add("*" + name + (option.takes_value ? before_value + valued : told));
+        add("*" + name + (option.takes_value ? before_value + valued : plain));
       }
       if (!option.positional.empty() && !words.empty()) add("1:" + option.positional + ":" + value);
     }
@@ -212,45 +191,41 @@ std::string zsh_completion(const Command& program, const Commands& commands) {
     cases += " ;;\n";
   }
   std::string own;
-  for (const Told& option : options_of(program)) {
-    for (const std::string& name : names_of(option)) {
-      own += ' ';
-      own += single_quoted(name + "[" + described(option.meaning) + "]");
-    }
-  }
-  return "#compdef impact-damper\n# zsh completion for impact-damper, by: impact-damper generate zsh\n"
-         "_impact_damper() {\n"
-         "  local context state state_descr line curcontext=$curcontext\n"
-         "  typeset -A opt_args\n"
-         "  local -a commands=(\n" +
-         described_commands +
-         "  )\n"
-         "  _arguments -C" +
-         own +
-         " '1: :->command' '*:: :->rest'\n"
-         "  case $state in\n"
-         "    command) _describe command commands; return ;;\n"
-         "    rest) ;;\n"
-         "    *) return ;;\n"
-         "  esac\n"
-         "  case $line[1] in\n" +
-         cases +
-         "  esac\n"
-         "}\n"
-         "if [ \"$funcstack[1]\" = _impact-damper ]; then\n"
-         "  _impact_damper \"$@\"\n"
-         "else\n"
-         "  compdef _impact_damper impact-damper\n"
-         "fi\n";
+  for (const Described& option : options_of(program))
+    for (const std::string& name : names_of(option))
+      own += " " + single_quoted(filled("{}[{}]", name, described(option.meaning)));
+  return filled(R"(#compdef impact-damper
+# zsh completion for impact-damper, by: impact-damper generate zsh
+_impact_damper() {
+  local context state state_descr line curcontext=$curcontext
+  typeset -A opt_args
+  local -a commands=(
+{}  )
+  _arguments -C{} '1: :->command' '*:: :->rest'
+  case $state in
+    command) _describe command commands; return ;;
+    rest) ;;
+    *) return ;;
+  esac
+  case $line[1] in
+{}  esac
+}
+if [ "$funcstack[1]" = _impact-damper ]; then
+  _impact_damper "$@"
+else
+  compdef _impact_damper impact-damper
+fi
+)",
+                described_commands, own, cases);
 }
 
 std::string fish_completion(const Command& program, const Commands& commands) {
   const auto fish_quoted = [](const std::string& text) { return "'" + escaped(text, "'\\", "\\") + "'"; };
-  const auto line = [&](const std::string& when, const Told& option) {
+  const auto line = [&](const std::string& when, const Described& option) {
     std::string text = "complete -c impact-damper -n " + fish_quoted(when);
     for (const std::string& name : option.shorts) text += " -s " + name;
     for (const std::string& name : option.longs) text += " -l " + name;
-    const std::vector<std::string> words = choices(option);
+    const std::vector<std::string_view> words = choices(option);
     if (!words.empty())
       text += " -x -a " + fish_quoted(joined(words, " "));
     else if (option.takes_value)
@@ -258,12 +233,12 @@ std::string fish_completion(const Command& program, const Commands& commands) {
     return text + " -d " + fish_quoted(brief(option.meaning)) + "\n";
   };
   std::string text = "# fish completion for impact-damper, by: impact-damper generate fish\n";
-  for (const Told& option : options_of(program)) text += line("__fish_use_subcommand", option);
+  for (const Described& option : options_of(program)) text += line("__fish_use_subcommand", option);
   for (const Command& command : commands) {
     const std::string name = command.name;
     text += "complete -c impact-damper -n __fish_use_subcommand -f -a " + name + " -d " +
             fish_quoted(command.description) + "\n";
-    for (const Told& option : options_of(command))
+    for (const Described& option : options_of(command))
       if (option.positional.empty() || !choices(option).empty())
         text += line("__fish_seen_subcommand_from " + name, option);
   }
@@ -271,9 +246,7 @@ std::string fish_completion(const Command& program, const Commands& commands) {
 }
 
 int generate(const Command& program, const Commands& commands, Arguments& arguments) {
-  const std::vector<std::string_view> kinds{"man", "bash", "zsh", "fish"};
-  const std::optional<std::size_t> kind = arguments.word("KIND", kinds);
-  if (!arguments.given("KIND")) arguments.reject("KIND", "must be given: man, bash, zsh or fish");
+  const std::optional<std::size_t> kind = arguments.required_word("KIND", {"man", "bash", "zsh", "fish"});
   arguments.finish();
   write_standard_output(*kind == 0   ? man_page(program, commands)
                         : *kind == 1 ? bash_completion(program, commands)
@@ -285,16 +258,15 @@ int generate(const Command& program, const Commands& commands, Arguments& argume
 }  // namespace
 
 Command generate_command(const Command& program, const Commands& commands) {
-  Command command{.name = "generate",
-                  .description = "Print the man page, or a shell's completions, of this program."};
-  command.options = {{"KIND", "man|bash|zsh|fish", "man, bash, zsh or fish"}};
-  command.footer =
-      "make install puts all four in place.\n\n"
-      "Examples:\n"
-      "  impact-damper generate man | man -l -\n"
-      "  . <(impact-damper generate bash)";
-  command.act = [&](Arguments& arguments) { return generate(program, commands, arguments); };
-  return command;
+  return {.name = "generate",
+          .description = "Print the man page, or a shell's completions, of this program.",
+          .options = {{"KIND", "man|bash|zsh|fish", "man, bash, zsh or fish"}},
+          .footer = R"(make install puts all four in place.
+
+Examples:
+  impact-damper generate man | man -l -
+  . <(impact-damper generate bash))",
+          .act = [&](Arguments& arguments) { return generate(program, commands, arguments); }};
 }
 
 }  // namespace impact_damper::cli

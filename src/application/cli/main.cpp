@@ -13,15 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "arguments.hpp"
 #include "commands.hpp"
-#include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/floating_point.hpp"
-#include "impact_damper/base/number_text.hpp"
-#include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/provenance.hpp"
-#include "interruption.hpp"
-#include "project_files.hpp"
 
 namespace {
 
@@ -118,28 +112,22 @@ std::vector<Problem> swallowed_options(const CLI::App& command) {
 
 // Returns the text above the subcommands.
 cli::Command whole_program() {
-  using Takes = cli::Option::Takes;
-  cli::Command program{.name = "impact-damper",
-                       .description =
-                           "The impact damped simple harmonic oscillator: simulate it, and hold the results "
-                           "against the paper."};
-  program.options = {
-      {.name = "-h,--help", .help = "Print this help message and exit", .takes = Takes::nothing},
-      {.name = "-v,--version",
-       .help = "Display program version information and exit",
-       .takes = Takes::nothing}};
-  program.footer =
-      "impact-damper SUBCOMMAND --help, or help SUBCOMMAND, says more about each.\n\n"
-      "The project's own files (data/..., figures/...) are looked for in the current folder, then where the\n"
-      "program was installed, PREFIX/share/impact-damper, then in the source folder in whose build/src it "
-      "is.\n\n"
-      "What a command writes has the ending of its format (.json, .csv, .dat, .html, .svg, .md, .h5) or "
-      "none.\n"
-      "As the name of a file to write, - is standard output, in place of what else is printed there.\n\n"
-      "Exit codes: 0 done, 1 a check failed, 2 the command line is not valid, 3 an input file's content "
-      "is\n"
-      "not valid, 4 numerical failure, 5 a file cannot be read or written, 130 interrupted.";
-  return program;
+  return {.name = "impact-damper",
+          .description =
+              "The impact damped simple harmonic oscillator: simulate it, and hold the results against the "
+              "paper.",
+          .options = {cli::flag_option("-h,--help", "Print this help message and exit"),
+                      cli::flag_option("-v,--version", "Display program version information and exit")},
+          .footer = R"(impact-damper SUBCOMMAND --help, or help SUBCOMMAND, says more about each.
+
+The project's own files (data/..., figures/...) are looked for in the current folder, then where the
+program was installed, PREFIX/share/impact-damper, then in the source folder in whose build/src it is.
+
+What a command writes has the ending of its format (.json, .csv, .dat, .html, .svg, .md, .h5) or none.
+As the name of a file to write, - is standard output, in place of what else is printed there.
+
+Exit codes: 0 done, 1 a check failed, 2 the command line is not valid, 3 an input file's content is
+not valid, 4 numerical failure, 5 a file cannot be read or written, 130 interrupted.)"};
 }
 
 void add_options(CLI::App& app, const cli::Command& command) {

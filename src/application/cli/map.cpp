@@ -10,9 +10,6 @@
 #include "application/sweeps/sweep_table.hpp"
 #include "commands.hpp"
 #include "drawing.hpp"
-#include "impact_damper/base/number_text.hpp"
-#include "impact_damper/io/file_output.hpp"
-#include "output.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -58,10 +55,13 @@ std::optional<std::size_t> index_of(Arguments& arguments, const std::string& opt
                                     const std::vector<std::string_view>& names, const std::string& what) {
   const auto found = std::ranges::find(names, name);
   if (found != names.end()) return std::size_t(found - names.begin());
-  const auto meant = nearest(name, names);
-  arguments.reject(option, "must be " + what + ": " + listed(names, "or") + "; got " + in_quotes(name) +
-                               (meant ? ", did you mean " + std::string(*meant) + "?" : ""));
+  arguments.reject(option, filled("must be {}: {}; got {}{}", what, listed(names, "or"), in_quotes(name),
+                                  did_you_mean(name, names)));
   return std::nullopt;
+}
+
+std::vector<std::string_view> names_of(const std::vector<GridAxis>& grid) {
+  return texts_of(grid, [](const GridAxis& axis) -> std::string_view { return axis.variable.name; });
 }
 
 std::optional<std::size_t> axis_of(Arguments& arguments, const std::string& option, const Plan& plan) {
@@ -70,12 +70,10 @@ std::optional<std::size_t> axis_of(Arguments& arguments, const std::string& opti
     arguments.reject(option, "must be given: a number of the grid");
     return std::nullopt;
   }
-  std::vector<std::string_view> names;
-  for (const GridAxis& axis : plan.grid) names.push_back(axis.variable.name);
-  const auto index = index_of(arguments, option, *name, names, "a number of the table's grid");
+  const auto index = index_of(arguments, option, *name, names_of(plan.grid), "a number of the table's grid");
   if (index && plan.grid[*index].size() < 2)
-    arguments.reject(option, "must have at least two values, " + *name +
-                                 " has one: " + number_text(plan.grid[*index].value(0)));
+    arguments.reject(
+        option, filled("must have at least two values, {} has one: {}", *name, plan.grid[*index].value(0)));
   return index;
 }
 
@@ -96,12 +94,10 @@ std::optional<std::size_t> quantity_of(Arguments& arguments, const Plan& plan) {
 // Sets each number that is neither x nor y to the value that --where gives, or to its only one.
 void fix_the_others(Arguments& arguments, const Plan& plan, MapQuestion& question) {
   std::vector<bool> is_given(plan.grid.size());
-  std::vector<std::string_view> names;
-  for (const GridAxis& axis : plan.grid) names.push_back(axis.variable.name);
   for (const std::string& text : arguments.texts("--where")) {
     const std::size_t equals = std::min(text.find('='), text.size());
-    const auto index =
-        index_of(arguments, "--where", text.substr(0, equals), names, "NAME=VALUE with a number of the grid");
+    const auto index = index_of(arguments, "--where", text.substr(0, equals), names_of(plan.grid),
+                                "NAME=VALUE with a number of the grid");
     if (!index) continue;
     const GridAxis& axis = plan.grid[*index];
     const std::string name(axis.variable.name);
@@ -120,31 +116,27 @@ void fix_the_others(Arguments& arguments, const Plan& plan, MapQuestion& questio
     const auto meant =
         std::ranges::min_element(values, {}, [&](double known) { return std::abs(known - value); });
     if (!(std::abs(*meant - value) <= rounding)) {
-      std::string known;
+      std::vector<std::string> known;
+      known.reserve(values.size());
+      for (const double each : values) known.push_back(number_text(each));
       constexpr std::size_t most = 12;
-      for (std::size_t i = 0; i < values.size(); ++i) {
-        if (values.size() > most && i == most - 1) known += ", ...";
-        if (values.size() > most && i >= most - 1 && i + 1 < values.size()) continue;
-        known += (i ? ", " : "") + number_text(values[i]);
+      if (known.size() > most) {
+        known.erase(known.begin() + most, known.end() - 1);
+        known[most - 1] = "...";
       }
-      std::string message = "must give ";
-      message.append(name).append(" one of its values: ").append(known).append("; got ");
-      arguments.reject("--where", message + in_quotes(text));
+      arguments.reject("--where", filled("must give {} one of its values: {}; got {}", name,
+                                         joined(known, ", "), in_quotes(text)));
       continue;
     }
     question.fixed[*index] = *meant;
   }
   for (std::size_t n = 0; n < plan.grid.size(); ++n) {
     if (n == question.x || n == question.y || is_given[n]) continue;
-    if (plan.grid[n].size() == 1) {
-      question.fixed[n] = plan.grid[n].value(0);
-    } else {
-      const std::string name(plan.grid[n].variable.name);
-      std::string message = "must be given for ";
-      message.append(name).append(", which has ").append(std::to_string(plan.grid[n].size()));
-      message.append(" values: --where ").append(name).append("=");
-      arguments.reject("--where", message + number_text(plan.grid[n].value(0)));
-    }
+    const GridAxis& axis = plan.grid[n];
+    question.fixed[n] = axis.value(0);
+    if (axis.size() > 1)
+      arguments.reject("--where", filled("must be given for {}, which has {} values: --where {}={}",
+                                         axis.variable.name, axis.size(), axis.variable.name, axis.value(0)));
   }
 }
 
@@ -175,10 +167,9 @@ std::vector<std::optional<double>> values_of(const Map& map) {
   return values;
 }
 
-std::string point_text(const Named& named, const Map& map, std::size_t ix, std::size_t iy,
-                       const std::function<std::string(double)>& number) {
-  return std::string(named.x().name) + " = " + with_unit(number(map.x.values[ix]), named.x().unit) + ", " +
-         std::string(named.y().name) + " = " + with_unit(number(map.y.values[iy]), named.y().unit);
+std::string point_text(const Named& named, const Map& map, std::size_t ix, std::size_t iy) {
+  return filled("{} = {}, {} = {}", named.x().name, with_unit(number_text(map.x.values[ix]), named.x().unit),
+                named.y().name, with_unit(number_text(map.y.values[iy]), named.y().unit));
 }
 
 // Returns " (+12 %)": the margin (M15.6).
@@ -190,9 +181,7 @@ std::string change_text(double from, double to) {
 }
 
 std::string statistic_text(const MapQuestion& question, const Map& map) {
-  return map.draws == 1
-             ? ""
-             : std::string(name_of(question.statistic)) + " of " + std::to_string(map.draws) + " draws";
+  return map.draws == 1 ? "" : filled("{} of {} draws", name_of(question.statistic), map.draws);
 }
 
 void add_block(Table& table, const std::string& name, std::vector<TableColumn> columns,
@@ -272,11 +261,11 @@ Drawing drawing_of(const Named& named, const Map& map) {
                     with_unit(number_text(question.fixed[n]), plan.grid[n].variable.unit);
   if (map.best) {
     const auto rounded = [](double value) { return rounded_text(value, 3); };
-    parameters += (parameters.empty() ? "" : "; ") + std::string("best ") +
-                  with_unit(rounded(map.best->value), named.unit_z()) + ", its worst neighbour " +
-                  (map.best->worst ? with_unit(rounded(*map.best->worst), named.unit_z()) +
-                                         change_text(map.best->value, *map.best->worst)
-                                   : "without a value");
+    parameters += filled("{}best {}, its worst neighbour {}", parameters.empty() ? "" : "; ",
+                         with_unit(rounded(map.best->value), named.unit_z()),
+                         map.best->worst ? with_unit(rounded(*map.best->worst), named.unit_z()) +
+                                               change_text(map.best->value, *map.best->worst)
+                                         : "without a value");
   }
   table.header = {"Map: " + drawing.title, "Parameters: " + parameters,
                   "x: " + Named::labelled(in_words(named.x().name), named.x().unit),
@@ -314,38 +303,30 @@ Drawing drawing_of(const Named& named, const Map& map) {
 
 // Returns remarks on the best point, a line each.
 std::string summary_of(const Named& named, const Map& map) {
-  const auto number = [](double value) { return number_text(value); };
-  const auto count = [&](CellState state) {
-    return std::to_string(std::ranges::count(map.cells, state, &Cell::state));
-  };
+  const auto z = [&](double value) { return with_unit(number_text(value), named.unit_z()); };
+  const auto count = [&](CellState state) { return std::ranges::count(map.cells, state, &Cell::state); };
   std::string text;
   if (map.best) {
     const BestPoint& best = *map.best;
     const std::string statistic = statistic_text(named.question, map);
-    text += "best: " + named.z().column() + " = " + with_unit(number(best.value), named.unit_z()) + " at " +
-            point_text(named, map, best.x, best.y, number) + (statistic.empty() ? "" : ", " + statistic) +
-            "\n";
-    text +=
-        "margin: " +
-        (best.worst ? with_unit(number(*best.worst), named.unit_z()) + change_text(best.value, *best.worst)
-                    : std::string("no value")) +
-        " at its worst neighbour, " + point_text(named, map, best.worst_x, best.worst_y, number) + "\n";
-    if (best.x_is_at_end || best.y_is_at_end) {
-      text += "the best point is at the end of the grid in " +
-              (best.x_is_at_end ? std::string(named.x().name) : "") +
-              (best.x_is_at_end && best.y_is_at_end ? " and " : "") +
-              (best.y_is_at_end ? std::string(named.y().name) : "") + ": there may be better ones beyond\n";
-    }
+    text += filled("best: {} = {} at {}{}\n", named.z().column(), z(best.value),
+                   point_text(named, map, best.x, best.y), statistic.empty() ? "" : ", " + statistic);
+    text += filled("margin: {} at its worst neighbour, {}\n",
+                   best.worst ? z(*best.worst) + change_text(best.value, *best.worst) : "no value",
+                   point_text(named, map, best.worst_x, best.worst_y));
+    if (best.x_is_at_end || best.y_is_at_end)
+      text +=
+          filled("the best point is at the end of the grid in {}{}{}: there may be better ones beyond\n",
+                 best.x_is_at_end ? named.x().name : "", best.x_is_at_end && best.y_is_at_end ? " and " : "",
+                 best.y_is_at_end ? named.y().name : "");
   }
-  text += "points: " + count(CellState::value) + " with a value, " + count(CellState::empty) + " empty, " +
-          count(CellState::failed) + " failed\n";
-  return text;
+  return text + filled("points: {} with a value, {} empty, {} failed\n", count(CellState::value),
+                       count(CellState::empty), count(CellState::failed));
 }
 
 int make_map(Arguments& arguments) {
-  const auto file = arguments.file("TABLE"), output = arguments.file("--output");
-  if (!file) arguments.reject("TABLE", "must be given: a table that sweep or merge has written");
-  if (!output) arguments.reject("--output", "must be given: the picture is written there, as SVG");
+  const auto file = arguments.required_file("TABLE", "a table that sweep or merge has written"),
+             output = arguments.required_file("--output", "the picture is written there, as SVG");
   reject_other_endings(arguments, "--output", output, {Format::svg});
   if (file) arguments.reject_overwriting("--output", output, {*file, *file + ".json"});
   arguments.finish();  // before the table is read, which decides what else is valid
@@ -363,16 +344,12 @@ int make_map(Arguments& arguments) {
     if (cell.state == CellState::value) values.push_back(cell.value);
   const std::string column = named.z().column();
   if (values.empty())
-    throw InputError(*file, {{"", "has no point with a value of " + column + ": there is nothing to draw"}});
+    throw InputError(*file,
+                     {{"", filled("has no point with a value of {}: there is nothing to draw", column)}});
   if (const auto [least, greatest] = std::ranges::minmax(values); least == greatest)
-    throw InputError(*file, {{"", "has only one value of " + column + ", " + number_text(least) +
-                                      ": there is nothing to draw"}});
-  std::string svg;
-  {
-    DrawingBoard board;
-    svg = board.draw(drawing_of(named, map));
-  }
-  write_output(output, svg);
+    throw InputError(*file,
+                     {{"", filled("has only one value of {}, {}: there is nothing to draw", column, least)}});
+  write_output(output, DrawingBoard().draw(drawing_of(named, map)));
   if (!is_standard_output(output)) write_standard_output(summary_of(named, map));
   return 0;
 }
@@ -380,31 +357,32 @@ int make_map(Arguments& arguments) {
 }  // namespace
 
 Command map_command() {
-  Command command{
+  return {
       .name = "map",
       .description =
-          "Draw a quantity of a sweep's table over two numbers of its grid, and tell the best point."};
-  command.options = {
-      input_option("TABLE", "FILE",
-                   "the table of a sweep, as CSV; FILE.json, which says what it holds, must be beside it"),
-      {"--x", "NAME", "the number of the grid along the horizontal axis"},
-      {"--y", "NAME", "the one along the vertical axis"},
-      {"--z", "NAME", "the quantity: its column, time_to_amplitude_6"},
-      {"--where", "NAME=VALUE", "of each other number of the grid, which of its values is drawn", "",
-       Option::Takes::repeated_value},
-      {"--statistic", "median|mean|worst", "what is drawn of several draws of one point; default median"},
-      {"--best", "least|greatest", "which values are best; default by the quantity, none of some"},
-      {"-o,--output", "FILE", "the picture, FILE.svg"}};
-  command.footer =
-      "A point of which a draw has no such quantity is marked as empty, one of which a draw did not end as\n"
-      "asked for as failed. The margin is the worst of the points one step of the grid away from the best.\n"
-      "Lines show where the amplitude is that of impact failure, or of the end of bounce-down. gnuplot must "
-      "be\n"
-      "there.\n\n"
-      "Example:\n"
-      "  impact-damper map map.csv --x clearance --y secondary_mass --z time_to_amplitude_6 -o map.svg";
-  command.act = make_map;
-  return command;
+          "Draw a quantity of a sweep's table over two numbers of its grid, and tell the best point.",
+      .options = {input_option(
+                      "TABLE", "FILE",
+                      "the table of a sweep, as CSV; FILE.json, which says what it holds, must be beside it"),
+                  {"--x", "NAME", "the number of the grid along the horizontal axis"},
+                  {"--y", "NAME", "the one along the vertical axis"},
+                  {"--z", "NAME", "the quantity: its column, time_to_amplitude_6"},
+                  repeated_option("--where", "NAME=VALUE",
+                                  "of each other number of the grid, which of its values is drawn"),
+                  {"--statistic", "median|mean|worst",
+                   "what is drawn of several draws of one point; default median"},
+                  {"--best", "least|greatest",
+                   "which values are best; default by the quantity, none of some"},
+                  {"-o,--output", "FILE", "the picture, FILE.svg"}},
+      .footer =
+          R"(A point of which a draw has no such quantity is marked as empty, one of which a draw did not end as
+asked for as failed. The margin is the worst of the points one step of the grid away from the best.
+Lines show where the amplitude is that of impact failure, or of the end of bounce-down. gnuplot must be
+there.
+
+Example:
+  impact-damper map map.csv --x clearance --y secondary_mass --z time_to_amplitude_6 -o map.svg)",
+      .act = make_map};
 }
 
 }  // namespace impact_damper::cli

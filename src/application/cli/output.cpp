@@ -4,9 +4,7 @@
 #include <filesystem>
 
 #include "application/sweeps/sweep_table.hpp"
-#include "impact_damper/base/text.hpp"
-#include "impact_damper/io/file_output.hpp"
-#include "interruption.hpp"
+#include "progress.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -41,6 +39,12 @@ std::string ending_of(const std::string& file) {
   return is_one ? ending : "";
 }
 
+// Returns the number of characters, not bytes, of a text in UTF-8.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
 }  // namespace
 
 void reject_other_endings(Arguments& arguments, const std::string& option,
@@ -73,6 +77,15 @@ Format format_of(Arguments& arguments, const std::optional<std::string>& output,
   return format;
 }
 
+std::optional<std::string> output_of(Arguments& arguments, const std::string& option,
+                                     std::initializer_list<Format> written,
+                                     const std::vector<std::filesystem::path>& inputs) {
+  auto output = arguments.file(option);
+  arguments.reject_overwriting(option, output, inputs);
+  reject_other_endings(arguments, option, output, written);
+  return output;
+}
+
 void reject_same_output(Arguments& arguments, const std::string& option,
                         const std::optional<std::string>& file, const std::string& other_option,
                         const std::optional<std::string>& other) {
@@ -97,5 +110,38 @@ void write_output(const std::optional<std::string>& output, std::string_view tex
     write_standard_output(text);
   }
 }
+
+std::string aligned(const Rows& rows) {
+  std::vector<std::size_t> widths(rows.front().size());
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
+  std::string text;
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      text += row[i];
+      if (i + 1 < row.size()) text.append(widths[i] - width_of(row[i]) + 2, ' ');
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string markdown_table(const Rows& rows) {
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line = "|", rule = "|";
+    for (std::string cell : row) {
+      for (std::size_t at = 0; (at = cell.find('|', at)) != std::string::npos; at += 2)
+        cell.insert(at, 1, '\\');
+      line += " " + cell + " |";
+      rule += "---|";
+    }
+    text += line + '\n' + (text.empty() ? rule + '\n' : "");
+  }
+  return text;
+}
+
+double in_three_digits(double value) { return rounded_to(value, 3); }
+std::string readable(double value) { return number_text(in_three_digits(value)); }
 
 }  // namespace impact_damper::cli

@@ -4,22 +4,18 @@
 #include <map>
 #include <optional>
 
-#include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/json_writer.hpp"
-#include "text_table.hpp"
+#include "output.hpp"
 
 namespace impact_damper::cli {
 namespace {
 
 // Returns the first of the claims, at most `most`, and how many more there are.
 std::string names_of(const std::vector<std::string>& claims, std::size_t most) {
-  std::string text;
-  for (std::size_t i = 0; i < claims.size() && i < most; ++i) {
-    if (i > 0) text += ", ";
-    text += claims[i];
-  }
-  if (claims.size() > most) text += " and " + std::to_string(claims.size() - most) + " more";
-  return text;
+  if (claims.size() <= most) return joined(claims, ", ");
+  return filled("{} and {} more",
+                joined(std::vector(claims.begin(), claims.begin() + std::ptrdiff_t(most)), ", "),
+                claims.size() - most);
 }
 
 // Returns the change of a number: "7.1 %", or what is added to a number that is 0.
@@ -45,10 +41,9 @@ bool turns_some(const PowerRow& row) { return (row.up && row.up->turn) || (row.d
 
 std::string summary_text(const PowerTable& table) {
   const auto some = std::ranges::count_if(table.rows, turns_some);
-  return std::to_string(table.rows.size()) + " numbers, " + std::to_string(table.claims) + " claims, " +
-         (table.engine.empty() ? "" : "engine " + table.engine + ", ") + "ensembles of " +
-         std::to_string(table.members) + ": " + std::to_string(some) + " numbers turn a verdict, " +
-         std::to_string(table.rows.size() - static_cast<std::size_t>(some)) + " turn none\n";
+  return filled("{} numbers, {} claims, {}ensembles of {}: {} numbers turn a verdict, {} turn none\n",
+                table.rows.size(), table.claims, table.engine.empty() ? "" : "engine " + table.engine + ", ",
+                table.members, some, table.rows.size() - static_cast<std::size_t>(some));
 }
 
 using Layout = JsonWriter::Layout;
@@ -63,23 +58,27 @@ void write(JsonWriter& out, std::string_view name, const std::optional<Direction
   out.close();
 }
 
+// Returns the cells of a row, with at most so many claims in each.
+std::vector<std::string> cells_of(const PowerRow& row, std::size_t most_claims) {
+  return {row.number.of,
+          row.number.name,
+          rounded_text(row.number.value, 4),
+          found_text(row.number, row.up),
+          claims_text(row.up, most_claims),
+          found_text(row.number, row.down),
+          claims_text(row.down, most_claims)};
+}
+
 // Returns the rows for which `wanted` holds, as a table whose first column is the scene, if they are of
 // several.
 template <class Wanted>
 std::string markdown_rows(const PowerTable& table, bool with_scene, Wanted wanted) {
-  std::string text = with_scene ? "| scene " : "";
-  text += "| number | is | smallest increase | turns | smallest decrease | turns |\n";
-  text += with_scene ? "|---|---|---|---|---|---|---|\n" : "|---|---|---|---|---|---|\n";
-  for (const PowerRow& row : table.rows) {
-    if (!wanted(row.number.of)) continue;
-    if (with_scene) text += "| " + row.number.of + " ";
-    for (const std::string& cell :
-         {row.number.name, rounded_text(row.number.value, 4), found_text(row.number, row.up),
-          claims_text(row.up, 3), found_text(row.number, row.down), claims_text(row.down, 3)})
-      text += "| " + cell + " ";
-    text += "|\n";
-  }
-  return text;
+  Rows rows{{"scene", "number", "is", "smallest increase", "turns", "smallest decrease", "turns"}};
+  for (const PowerRow& row : table.rows)
+    if (wanted(row.number.of)) rows.push_back(cells_of(row, 3));
+  if (!with_scene)
+    for (auto& row : rows) row.erase(row.begin());
+  return markdown_table(rows);
 }
 
 // Returns the numbers that no claim notices, by the test that does.
@@ -91,30 +90,21 @@ std::string unnoticed_rows(const PowerTable& table) {
     if (!text.empty()) text += ", ";
     text += row.number.of + " " + row.number.name;
   }
-  std::string text = "| test | notices |\n|---|---|\n";
-  for (const auto& each : numbers) {
-    text += "| ";
-    text += each.first;
-    text += " | " + each.second + " |\n";
-  }
-  return text;
+  Rows rows{{"test", "notices"}};
+  for (const auto& [test, text] : numbers) rows.push_back({std::string(test), text});
+  return markdown_table(rows);
 }
 
 }  // namespace
 
 std::string table_text(const PowerTable& table) {
-  std::vector<std::vector<std::string>> lines{
-      {"of", "number", "is", "increase", "turns", "decrease", "turns"}};
-  for (const PowerRow& row : table.rows)
-    lines.push_back({row.number.of, row.number.name, rounded_text(row.number.value, 4),
-                     found_text(row.number, row.up), claims_text(row.up, 2), found_text(row.number, row.down),
-                     claims_text(row.down, 2)});
+  Rows rows{{"of", "number", "is", "increase", "turns", "decrease", "turns"}};
+  for (const PowerRow& row : table.rows) rows.push_back(cells_of(row, 2));
   const std::string left_out =
       table.unsettled.empty()
           ? ""
-          : "left out, as other ensembles turn them: " + names_of(table.unsettled, table.unsettled.size()) +
-                "\n";
-  return aligned(lines) + "\n" + left_out + summary_text(table);
+          : filled("left out, as other ensembles turn them: {}\n", joined(table.unsettled, ", "));
+  return aligned(rows) + "\n" + left_out + summary_text(table);
 }
 
 std::string json_text(const PowerTable& table) {
@@ -146,29 +136,29 @@ std::string markdown_text(const PowerTable& table) {
   const auto is = [](std::string_view which) {
     return [which](const std::string& of) { return of == which; };
   };
-  std::string text =
-      "# How little turns a verdict\n\n"
-      "Made by `impact-damper verify --power --markdown` from [data/claims.json](../data/claims.json), all "
-      "digits in\n[power.json](power.json). For each number of the scenes, of the analysis and of what "
-      "runs record: the smallest\nchange, all other numbers as they are, that turns at least one verdict of "
-      "[claims.md](claims.md), and the claims that it\nturns.\n\n"
-      "- A number becomes larger by so many percent, or is divided by as much: 50 % is times 1.5 or divided "
-      "by 1.5. One that\n  is 0 becomes what is given.\n"
-      "- A scene's number is changed as if its file were wrong: the simulation and the analysis both get the "
-      "changed one.\n  What runs record is multiplied in every run that a measure looks at. Sweeps under "
-      "a force are made from their first\n  start only.\n"
-      "- Medians of chaotic decays do not depend on a number monotonically. Changes of 0.1, 0.2, 0.5, 1, "
-      "2, 5 ... percent are\n  tried until a verdict turns, and bisection over changes of two digits narrows "
-      "the interval before it. The change\n  given turns a verdict, and the next smaller one of two digits "
-      "turns none; that no smaller change does is not\n  proved. Whole numbers are tried one by one; their "
-      "change is a\n  percentage of what they are.\n"
-      "- A small change means that the claims hold the number tightly, *none* that they do not know it. "
-      "The paper's words\n  decide that, not the program: two percent of a momentum are below any digit "
-      "that it prints.\n";
-  text += "- Left out, because at least one of " + std::to_string(table.ensembles) +
-          " other ensembles turns them without any change: " +
-          (table.unsettled.empty() ? "none" : names_of(table.unsettled, table.unsettled.size())) + ".\n";
-  text += "\n";
+  std::string text = R"(# How little turns a verdict
+
+Made by `impact-damper verify --power --markdown` from [data/claims.json](../data/claims.json), all digits in
+[power.json](power.json). For each number of the scenes, of the analysis and of what runs record: the smallest
+change, all other numbers as they are, that turns at least one verdict of [claims.md](claims.md), and the claims that it
+turns.
+
+- A number becomes larger by so many percent, or is divided by as much: 50 % is times 1.5 or divided by 1.5. One that
+  is 0 becomes what is given.
+- A scene's number is changed as if its file were wrong: the simulation and the analysis both get the changed one.
+  What runs record is multiplied in every run that a measure looks at. Sweeps under a force are made from their first
+  start only.
+- Medians of chaotic decays do not depend on a number monotonically. Changes of 0.1, 0.2, 0.5, 1, 2, 5 ... percent are
+  tried until a verdict turns, and bisection over changes of two digits narrows the interval before it. The change
+  given turns a verdict, and the next smaller one of two digits turns none; that no smaller change does is not
+  proved. Whole numbers are tried one by one; their change is a
+  percentage of what they are.
+- A small change means that the claims hold the number tightly, *none* that they do not know it. The paper's words
+  decide that, not the program: two percent of a momentum are below any digit that it prints.
+)";
+  text +=
+      filled("- Left out, because at least one of {} other ensembles turns them without any change: {}.\n\n",
+             table.ensembles, table.unsettled.empty() ? "none" : joined(table.unsettled, ", "));
   text += summary_text(table);
   text += "\n## Scenes\n\n" + markdown_rows(table, true, [](const std::string& of) {
             return of != "analysis" && of != "columns";

@@ -1,12 +1,10 @@
-// Messages about the progress of a command that takes long.
+// What a command that takes long reports: how far it is, and what is left when it is ended from outside, by
+// Ctrl-C, a closed terminal, or a pipe whose reader has ended.
 #pragma once
 
-#include <chrono>
 #include <condition_variable>
-#include <iostream>
 #include <mutex>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -17,52 +15,38 @@ namespace impact_damper::cli {
 // A thread of its own reports it, also during a long simulation.
 class ProgressOnStderr {
  public:
-  explicit ProgressOnStderr(std::string command) : command_(std::move(command)) {
-    try {
-      teller_ = std::thread([this] { tell(); });
-    } catch (const std::system_error&) {
-      // Without a thread the work continues without messages.
-    }
-  }
+  explicit ProgressOnStderr(std::string command);
   ProgressOnStderr(const ProgressOnStderr&) = delete;
   ProgressOnStderr& operator=(const ProgressOnStderr&) = delete;
-  ~ProgressOnStderr() {
-    {
-      const std::lock_guard lock(mutex_);
-      ended_ = true;
-    }
-    changed_.notify_all();
-    if (teller_.joinable()) teller_.join();
-  }
+  ~ProgressOnStderr();
+  // May be called from several threads.
   void operator()(const std::string& doing) {
     const std::lock_guard lock(mutex_);
     doing_ = doing;
   }
 
  private:
-  void tell() {
-    using namespace std::chrono_literals;
-    constexpr int first = 2, at_least_every = 10;  // seconds
-    constexpr int minute = 60;                     // after n minutes at most a line in n seconds
-    std::string told;
-    std::unique_lock lock(mutex_);
-    for (int second = 1, last = 0; !changed_.wait_for(lock, 1s, [&] { return ended_; }); ++second) {
-      const int silent = second - last;
-      if (second < first || doing_.empty() || silent < second / minute) continue;
-      if (doing_ == told && silent < at_least_every) continue;
-      std::cerr << command_ << ": " << doing_
-                << (doing_ == told ? ", " + std::to_string(second) + " s since the start" : "") << std::endl;
-      told = doing_;
-      last = second;
-    }
-  }
+  void report();
 
   std::string command_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::string doing_;
   bool ended_ = false;
-  std::thread teller_;
+  std::thread reporter_;
 };
+
+// After this call SIGINT, SIGTERM and SIGHUP, unless they are ignored already, end the program at once: one
+// line on stderr reports what is left, the file being written is removed, and the exit code is 128 plus the
+// signal's number, 130 for SIGINT. A pipe without a reader ends the program without a message, and a file
+// that outgrows the limit on its size is an error of writing it, not an end.
+void end_cleanly();
+
+// Sets the text of that line after "interrupted: ". Commands update it as they proceed.
+void if_interrupted_say(const std::string& text);
+
+// Returns that text for a file that is written: it is kept as it was, or does not exist. For "-": nothing is
+// written.
+std::string left_as_it_was(const std::string& file);
 
 }  // namespace impact_damper::cli

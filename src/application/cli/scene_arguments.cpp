@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include "impact_damper/analysis/cautions.hpp"
-#include "impact_damper/base/number_text.hpp"
 #include "impact_damper/engine_options.hpp"
 
 namespace impact_damper::cli {
@@ -35,18 +34,14 @@ struct OfferedOption {
 
 template <class Value>
 std::string type_of(const OptionInfo& option) {
-  std::string type(option.symbol);
   if constexpr (std::is_enum_v<Value>)
-    for (const std::string_view word : words_of<Value>())
-      type += (type.empty() ? "" : "|") + std::string(word);
-  return type;
+    return joined(words_of<Value>(), "|");
+  else
+    return std::string(option.symbol);
 }
 
 std::vector<std::string_view> names_of(const std::vector<Engine>& engines) {
-  std::vector<std::string_view> names;
-  names.reserve(engines.size());
-  for (const Engine& engine : engines) names.push_back(name_of(engine));
-  return names;
+  return texts_of(engines, [](const Engine& engine) { return name_of(engine); });
 }
 
 // Returns the options of these engines, first those that only some of them have.
@@ -73,13 +68,13 @@ std::vector<OfferedOption> offered_options(const std::vector<Engine>& engines) {
   if (speed == offered.end()) return offered;
   speed->defaults = {number_text(usual_stuck_speed)};
   offered.insert(
-      speed, {{.name = "stuck",
-               .meaning = "a mass that sticks is in a sustained contact (contact), or both masses are one "
-                          "as in the paper, by equation (9) with the force divided by 1 + nu, until x'' "
-                          "changes its sign"},
-              "contact|paper",
-              speed->engines,
-              {"contact"}});
+      speed,
+      {{.name = "stuck",
+        .meaning = "a mass that sticks is in a sustained contact (contact), or both masses are one as in the "
+                   "paper, by equation (9) with the force divided by 1 + nu, until x'' changes its sign"},
+       "contact|paper",
+       speed->engines,
+       {"contact"}});
   return offered;
 }
 
@@ -89,8 +84,8 @@ void reject_foreign_options(Arguments& arguments, const std::vector<Engine>& eng
   for (const OfferedOption& offered : offered_options(engines)) {
     const std::string option = option_of(offered.info.name);
     if (arguments.given(option) && std::ranges::count(offered.engines, engine) == 0)
-      arguments.reject(option, "is an option of --engine " + listed(offered.engines, "or") +
-                                   ", got --engine " + std::string(engine));
+      arguments.reject(option, filled("is an option of --engine {}, got --engine {}",
+                                      listed(offered.engines, "or"), engine));
   }
 }
 
@@ -98,13 +93,11 @@ template <class Value>
 void read_option(Arguments& arguments, const OptionInfo& info, Value& value) {
   const std::string option = option_of(info.name);
   if constexpr (std::is_enum_v<Value>) {
-    if (const auto index = arguments.word(option, words_of<Value>())) value = all_of<Value>.begin()[*index];
+    value = arguments.choice(option, all_of<Value>, value);
   } else if constexpr (std::is_same_v<Value, bool>) {
     value = arguments.flag(option);
-  } else if constexpr (std::is_same_v<Value, std::int64_t>) {
-    value = arguments.whole_number(option, info.range).value_or(value);
   } else {
-    if (const auto number = arguments.number(option, info.range)) value = *number;
+    arguments.read(option, value, info.range);
   }
 }
 
@@ -181,6 +174,8 @@ SceneFile scene_of(Arguments& arguments, Stops stops) {
   return file;
 }
 
+std::string scene_name_of(const Arguments& arguments) { return arguments.text("--scene").value_or(""); }
+
 void require_one_damper(const Scene& scene, const std::string& scene_file) {
   if (!has_one_damper(scene)) throw InputError(scene_file, {{"/dampers", problem_of_several().message}});
 }
@@ -190,8 +185,8 @@ void reject_options_beside_units(Arguments& arguments, const SceneFile& scene, c
   const auto reject = [&](std::string_view field) {
     const std::string option = option_of(field);
     if (arguments.offers(option) && arguments.given(option))
-      arguments.reject(option,
-                       "is dimensionless, the scene is in units: its file" + instead + " sets its numbers");
+      arguments.reject(
+          option, filled("is dimensionless, the scene is in units: its file{} sets its numbers", instead));
   };
   for (const SceneField& field : scene_fields) reject(field.name);
   reject("until_time");
@@ -209,17 +204,29 @@ Engine engine_of(Arguments& arguments, const std::vector<Engine>& engines) {
   return engine;
 }
 
+bool in_si(Arguments& arguments, Format format, const SceneFile& scene, const std::string& what) {
+  const bool asked = arguments.flag("--si");
+  if (asked && format != Format::csv)
+    arguments.reject(
+        "--si", filled("is for --format csv; {} is dimensionless, its units say what a unit is in SI", what));
+  if (asked && !scene.scales) arguments.reject("--si", "needs a scene in units, by --scene");
+  return asked;
+}
+
+void warn(const std::string& command, const std::string& text) {
+  std::cerr << command + ": warning: " + text + '\n';
+}
+
 void warn_of_cautions(const std::string& command, const Scene& scene, const std::optional<Scales>& scales) {
-  for (const std::string& caution : cautions_of(scene, scales))
-    std::cerr << command << ": warning: " << caution << '\n';
+  for (const std::string& caution : cautions_of(scene, scales)) warn(command, caution);
 }
 
 void warn_of_early_end(const std::string& command, const Run& run, const std::optional<Scales>& scales) {
-  const auto warn = [&](const std::string& budget, const std::string& option) {
-    std::cerr << command + ": warning: the run ended early, at time " + rounded_text(run.end_time, 6) +
-                     (scales ? " (" + rounded_text(run.end_time * scales->of(Dimension::time), 6) + " s)"
-                             : "") +
-                     ": it had used up its " + budget + "; " + option + " raises that\n";
+  const auto warn_of = [&](const std::string& budget, const std::string& option) {
+    const std::string seconds =
+        scales ? filled(" ({} s)", rounded_text(run.end_time * scales->of(Dimension::time), 6)) : "";
+    warn(command, filled("the run ended early, at time {}{}: it had used up its {}; {} raises that",
+                         rounded_text(run.end_time, 6), seconds, budget, option));
   };
   const Budget& budget =
       std::visit([](const auto& engine) -> const Budget& { return engine.budget; }, run.engine);
@@ -228,21 +235,20 @@ void warn_of_early_end(const std::string& command, const Run& run, const std::op
     case StopReason::amplitude:
       return;
     case StopReason::impact_budget:
-      return warn("budget of " + std::to_string(budget.max_impacts) + " impacts", "--max-impacts");
+      return warn_of(filled("budget of {} impacts", budget.max_impacts), "--max-impacts");
     case StopReason::half_cycle_budget:
-      return warn("budget of " + std::to_string(budget.max_half_cycles) + " half cycles",
-                  "--max-half-cycles");
+      return warn_of(filled("budget of {} half cycles", budget.max_half_cycles), "--max-half-cycles");
     case StopReason::time_budget:
-      return warn("budget of time, " + rounded_text(*budget.max_time, 6), "--max-time");
+      return warn_of("budget of time, " + rounded_text(*budget.max_time, 6), "--max-time");
     case StopReason::step_budget:
       break;
   }
   const std::int64_t steps = std::visit([](const auto& engine) { return engine.max_steps; }, run.engine);
-  warn("budget of " + std::to_string(steps) +
-           (std::holds_alternative<Cem>(run.engine)
-                ? " time steps"
-                : " steps of the searches for events and of the integrals of energy"),
-       "--max-steps");
+  warn_of(filled("budget of {} {}", steps,
+                 std::holds_alternative<Cem>(run.engine)
+                     ? "time steps"
+                     : "steps of the searches for events and of the integrals of energy"),
+          "--max-steps");
 }
 
 void reject_as_options(std::vector<Problem> problems, const std::string& scene_file,
@@ -260,6 +266,20 @@ void reject_as_options(std::vector<Problem> problems, const std::string& scene_f
   throw UsageError(std::move(problems));
 }
 
+void reject_as_options(const std::vector<Problem>& problems,
+                       std::initializer_list<std::pair<std::string_view, std::string_view>> options) {
+  std::vector<Problem> named;
+  for (const auto& [field, message] : problems) {
+    const auto* const found = std::ranges::find(options, std::string_view(field),
+                                                &std::pair<std::string_view, std::string_view>::first);
+    if (found != options.end())
+      named.push_back({std::string(found->second), message});
+    else
+      named.push_back({"--scene", field == "scene" ? message : filled("{} {}", field, message)});
+  }
+  throw UsageError(std::move(named));
+}
+
 Option threads_option() {
   return {"--threads", "N",
           "how many simulate at once; default one for each processor, same results with any"};
@@ -270,45 +290,40 @@ Option scenes_option() {
                       "folder of the scenes that runs are named after; default data/scenes");
 }
 
+std::string scenes_folder(Arguments& arguments) {
+  return arguments.file("--scenes").value_or(project_file("data/scenes"));
+}
+
 Options scene_options(Stops stops) {
-  Options options;
-  const auto add = [&](const std::string& name, const std::string& type, const std::string& help) {
-    options.push_back({name, type, help, "Scene"});
-  };
-  options.push_back(input_option(
-      "--scene", "FILE",
-      "read the scene from a JSON file, dimensionless or in kg, N/m and\nmm; the options below replace "
-      "its numbers and are always\ndimensionless"));
-  options.back().group = "Scene";
+  Options options{input_option("--scene", "FILE",
+                               "read the scene from a JSON file, dimensionless or in kg, N/m and\nmm; the "
+                               "options below replace its numbers and are always\ndimensionless")};
   const Scene defaults;
-  for (const SceneField& field : scene_fields) {
-    add(option_of(field.name), "X",
-        std::string(field.meaning) + ";\n" + range_of(field) + ", default " +
-            number_text(field.number.in(defaults)));
+  for (const SceneField& field : scene_fields)
+    options.push_back(
+        {option_of(field.name), "X",
+         filled("{};\n{}, default {}", field.meaning, range_of(field), field.number.in(defaults))});
+  if (stops == Stops::needed) {
+    options.push_back({"--until-time", "T", "stop at this time; a number > 0"});
+    options.push_back({"--until-amplitude", "A",
+                       "stop at the end of the first half cycle below this amplitude;\na number > 0. One of "
+                       "the two stops, or both, must be given"});
   }
-  if (stops == Stops::ignored) return options;
-  add("--until-time", "T", "stop at this time; a number > 0");
-  add("--until-amplitude", "A",
-      "stop at the end of the first half cycle below this amplitude;\n"
-      "a number > 0. One of the two stops, or both, must be given");
-  return options;
+  return in_group("Scene", std::move(options));
 }
 
 Options engine_options(const std::vector<Engine>& engines) {
-  Options options;
-  Option engine{"--engine", "", "", "Engine"};
-  for (const Engine& each : engines) {
-    const std::string name(name_of(each));
-    engine.help += (engine.type.empty() ? name + " (default)" : ";\n" + name) + ": ";
-    engine.help += std::visit([](const auto& chosen) { return chosen.meaning; }, each);
-    engine.type += (engine.type.empty() ? "" : "|") + name;
-  }
-  options.push_back(engine);
+  std::vector<std::string> meanings;
+  meanings.reserve(engines.size());
+  for (const Engine& each : engines)
+    meanings.push_back(filled("{}{}: {}", name_of(each), meanings.empty() ? " (default)" : "",
+                              std::visit([](const auto& chosen) { return chosen.meaning; }, each)));
+  Options options{{"--engine", joined(names_of(engines), "|"), joined(meanings, ";\n")}};
   constexpr std::size_t width = 66;
   for (const OfferedOption& each : offered_options(engines))
     options.push_back({option_of(each.info.name), each.type, in_lines(help_of(each, engines.size()), width),
-                       "Engine", each.type.empty() ? Option::Takes::nothing : Option::Takes::value});
-  return options;
+                       each.type.empty() ? Option::Takes::nothing : Option::Takes::value});
+  return in_group("Engine", std::move(options));
 }
 
 }  // namespace impact_damper::cli

@@ -6,13 +6,7 @@
 #include "application/reproduction/catalogue.hpp"
 #include "application/reproduction/scene_runs.hpp"
 #include "application/sweeps/plan.hpp"
-#include "arguments.hpp"
 #include "commands.hpp"
-#include "impact_damper/base/errors.hpp"
-#include "impact_damper/io/file_output.hpp"
-#include "interruption.hpp"
-#include "output.hpp"
-#include "project_files.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -36,10 +30,8 @@ std::vector<const Figure*> chosen(const Catalogue& catalogue, Arguments& argumen
     if (figure && figure->table != TableKind::drawing) {
       figures.push_back(figure);
     } else {
-      std::string known;
-      for (const std::string_view number : numbers)
-        known += (known.empty() ? "" : ", ") + std::string(number);
-      arguments.reject("--figure", "must be a figure with a table (" + known + "), got " + in_quotes(name));
+      arguments.reject("--figure", filled("must be a figure with a table ({}), got {}", joined(numbers, ", "),
+                                          in_quotes(name)));
     }
   }
   return figures;
@@ -51,13 +43,11 @@ void for_figure(const Figure& figure, Read read) {
   try {
     read();
   } catch (const InputError& error) {
-    std::vector<std::string> problems;
-    for (const std::string& problem : error.problems()) {
-      problems.push_back("figure " + figure.number + ": " + problem);
-    }
+    std::vector<std::string> problems = error.problems();
+    for (std::string& problem : problems) problem = filled("figure {}: {}", figure.number, problem);
     throw InputError(problems);
   } catch (const IoError& error) {
-    throw IoError("figure " + figure.number + ": " + error.what());
+    throw IoError(filled("figure {}: {}", figure.number, error.what()));
   }
 }
 
@@ -121,7 +111,7 @@ void load(const Figure& figure, const SceneRuns& folders, const fs::path& catalo
 int make_tables(Arguments& arguments) {
   const fs::path runs_folder = arguments.file("--runs").value_or("");
   if (!arguments.given("--runs")) arguments.reject("--runs", "must be given: the folder of run files");
-  const SceneRuns folders{runs_folder, arguments.file("--scenes").value_or(project_file("data/scenes"))};
+  const SceneRuns folders{runs_folder, scenes_folder(arguments)};
   const auto output = arguments.file("--output");
   const Format format = format_of(arguments, output, {Format::gnuplot, Format::csv});
   const Threads threads = threads_of(arguments);
@@ -132,18 +122,12 @@ int make_tables(Arguments& arguments) {
   const bool on_standard_output = !output || is_standard_output(output);
   const bool into_folder = !on_standard_output && fs::is_directory(*output);
   if (!into_folder && figures.size() != 1) {
-    arguments.reject("--output", "must be an existing folder if more than one table is made, got " +
-                                     (output ? in_quotes(*output) : "none"));
+    arguments.reject("--output", filled("must be an existing folder if more than one table is made, got {}",
+                                        output ? in_quotes(*output) : "none"));
   }
   std::vector<fs::path> inputs{catalogue_file};
-  const auto add_run = [&](const std::string& name) {
-    const fs::path run = folders.file_of(name);
-    inputs.push_back(run);
-    for (std::int64_t member = 2; member <= most_members; ++member)
-      inputs.push_back(member_file(run, member));
-  };
-  for (const CatalogueScene& scene : catalogue.scenes) add_run(scene.name);
-  for (const CatalogueRun& run : catalogue.runs) add_run(run.name);
+  for (const CatalogueScene& scene : catalogue.scenes) add_ensemble(inputs, folders.file_of(scene.name));
+  for (const CatalogueRun& run : catalogue.runs) add_ensemble(inputs, folders.file_of(run.name));
   for (const CatalogueResponse& response : catalogue.responses)
     inputs.push_back(folders.file_of(response.name));
   for (const Figure* figure : figures) {
@@ -168,8 +152,8 @@ int make_tables(Arguments& arguments) {
   std::size_t made = 0;
   for (const Figure* figure : figures) {
     if (!on_standard_output) {
-      if_interrupted_say(std::to_string(figures.size() - made++) + " of " + std::to_string(figures.size()) +
-                         " tables are left; " + left_as_it_was(place_of(*figure)));
+      if_interrupted_say(filled("{} of {} tables are left; {}", figures.size() - made++, figures.size(),
+                                left_as_it_was(place_of(*figure))));
     }
     load(*figure, folders, threads, runs);
     load_further(*figure, folders, catalogue, threads, further);
@@ -186,36 +170,35 @@ int make_tables(Arguments& arguments) {
 }  // namespace
 
 Command series_command() {
-  Command command{.name = "series", .description = "Make from run files the tables that figures draw."};
-  command.options = {
-      input_option("--catalogue", "FILE", "which figure draws what; default figures/catalogue.json"),
-      input_option("--runs", "FOLDER",
-                   "folder of the runs, must be given: SCENE.json of each scene, with\n"
-                   "the members of the ensembles that figures show (run --members),\n"
-                   "NAME.json of each further run and response and NAME.csv of each\nsweep that they draw"),
-      scenes_option(),
-      {.name = "--figure",
-       .type = "NUMBER",
-       .help = "only the table of the catalogue's figure NUMBER; may be repeated;\ndefault all",
-       .takes = Option::Takes::repeated_value},
-      {"-o,--output", "PLACE", "file, or folder for figNN.dat or figNN.csv; default standard output"},
-      {"--format", "NAME", "gnuplot (default), what the figures are drawn from, or csv"},
-      {"--threads", "N", "how many read at once; default one for each processor, same tables\nwith any"}};
-  command.footer =
-      "Tables are text: a commented header with columns, scaling, scenes and script, then blocks of "
-      "numbers.\n"
-      "With --format csv the same numbers are tidy CSV (RFC 4180, lines end with LF) under\n"
-      "block,curve,x,y,low,high: a row for each x of each curve; low and high are the ends of an interval, "
-      "an\n"
-      "empty cell is no number, a row without numbers interrupts the line.\n"
-      "A run that is missing, too short, altered, of another scene or of another engine than the others is\n"
-      "rejected with the figure's and the file's name.\n\n"
-      "Examples:\n"
-      "  impact-damper series --runs build/runs/exact --figure 8\n"
-      "  impact-damper series --runs build/runs/exact -o build/series/exact\n"
-      "  impact-damper series --runs build/runs/exact --figure 8 --format csv -o fig08.csv";
-  command.act = make_tables;
-  return command;
+  return {
+      .name = "series",
+      .description = "Make from run files the tables that figures draw.",
+      .options =
+          {input_option("--catalogue", "FILE", "which figure draws what; default figures/catalogue.json"),
+           input_option("--runs", "FOLDER",
+                        "folder of the runs, must be given: SCENE.json of each scene, with\nthe members of "
+                        "the ensembles that figures show (run --members),\nNAME.json of each further run and "
+                        "response and NAME.csv of each\nsweep that they draw"),
+           scenes_option(),
+           repeated_option("--figure", "NUMBER",
+                           "only the table of the catalogue's figure NUMBER; may be repeated;\ndefault all"),
+           {"-o,--output", "PLACE", "file, or folder for figNN.dat or figNN.csv; default standard output"},
+           {"--format", "NAME", "gnuplot (default), what the figures are drawn from, or csv"},
+           {"--threads", "N",
+            "how many read at once; default one for each processor, same tables\nwith any"}},
+      .footer =
+          R"(Tables are text: a commented header with columns, scaling, scenes and script, then blocks of numbers.
+With --format csv the same numbers are tidy CSV (RFC 4180, lines end with LF) under
+block,curve,x,y,low,high: a row for each x of each curve; low and high are the ends of an interval, an
+empty cell is no number, a row without numbers interrupts the line.
+A run that is missing, too short, altered, of another scene or of another engine than the others is
+rejected with the figure's and the file's name.
+
+Examples:
+  impact-damper series --runs build/runs/exact --figure 8
+  impact-damper series --runs build/runs/exact -o build/series/exact
+  impact-damper series --runs build/runs/exact --figure 8 --format csv -o fig08.csv)",
+      .act = make_tables};
 }
 
 }  // namespace impact_damper::cli

@@ -4,23 +4,13 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <iostream>
 
 #include "application/sweeps/plan.hpp"
 #include "application/sweeps/sweep_table.hpp"
-#include "commands.hpp"
-#include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/sha256.hpp"
-#include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/provenance.hpp"
-#include "interruption.hpp"
-#include "output.hpp"
-#include "progress.hpp"
-#include "project_files.hpp"
 #include "scene_arguments.hpp"
-#include "text_table.hpp"
-#include "vary.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -35,9 +25,7 @@ double seconds_since(Clock::time_point begin) {
 // Reads FROM:TO:N, FROM:TO:N:log or V,V,...
 std::optional<GridAxis> axis_of(Arguments& arguments, const std::string& text,
                                 const std::vector<Variable>& variables) {
-  std::vector<std::string_view> names(variables.size());
-  std::ranges::transform(variables, names.begin(), &Variable::name);
-  const auto varied = varied_of(arguments, text, names);
+  const auto varied = varied_of(arguments, text, texts_of(variables, &Variable::name));
   if (!varied) return std::nullopt;
   GridAxis axis;
   axis.variable = variables[varied->index];
@@ -56,27 +44,22 @@ std::optional<GridAxis> axis_of(Arguments& arguments, const std::string& text,
                !(axis.spacing == Spacing::logarithmic && !(range->first > 0));
     if (is_valid) axis.from = range->first, axis.to = range->second, axis.count = range->count;
   } else {
-    for (std::size_t begin = 0; is_valid && begin <= values.size();) {
-      const std::size_t end = std::min(values.find(',', begin), values.size());
-      const auto value = parse_number(std::string_view(values).substr(begin, end - begin));
-      is_valid = value.has_value();
-      if (value) axis.values.push_back(*value);
-      begin = end + 1;
-    }
+    const auto listed = parse_numbers(values, ',');
+    is_valid = listed.has_value();
+    axis.values = listed.value_or(std::vector<double>{});
   }
   if (!is_valid) {
-    arguments.reject("--vary",
-                     "must be NAME=FROM:TO:N, NAME=FROM:TO:N:log or NAME=V,V,... with FROM < TO, for log "
-                     "both > 0, and N from 2 to " +
-                         std::to_string(most_axis_values) + ", got " + in_quotes(text));
+    arguments.reject("--vary", filled("must be NAME=FROM:TO:N, NAME=FROM:TO:N:log or NAME=V,V,... with FROM "
+                                      "< TO, for log both > 0, and N from 2 to {}, got {}",
+                                      most_axis_values, in_quotes(text)));
     return std::nullopt;
   }
   // The ends of a range, or all values of a list.
   const std::vector<double> ends = axis.values.empty() ? std::vector{axis.from, axis.to} : axis.values;
   for (const double value : ends) {
     if (axis.variable.range.allows(value)) continue;
-    arguments.reject("--vary", "values of " + std::string(axis.variable.name) + " must be " +
-                                   axis.variable.range.describe("numbers") + ", got " + number_text(value));
+    arguments.reject("--vary", filled("values of {} must be {}, got {}", axis.variable.name,
+                                      axis.variable.range.describe("numbers"), value));
     break;
   }
   return axis;
@@ -88,37 +71,29 @@ void read_kept(Arguments& arguments, Plan& plan) {
     arguments.reject("--keep", "must be given: which quantities, --list-quantities lists them");
     return;
   }
-  for (std::size_t begin = 0; begin <= list.size();) {
-    const std::size_t end = std::min(list.find(',', begin), list.size());
-    const QuantityReading reading = read_quantity(std::string_view(list).substr(begin, end - begin));
+  for (const std::string_view each : parts_of(list)) {
+    const QuantityReading reading = read_quantity(each);
     if (reading.kept) {
       plan.quantities.push_back(*reading.kept);
     } else {
       arguments.reject("--keep", reading.problem);
     }
-    begin = end + 1;
   }
 }
 
 // Returns the options for what a plan contains.
 Options options_of_plan() {
-  Options options{
-      {"--vary", "NAME=FROM:TO:N[:log]",
-       "without a plan: the number of the scene that takes N values, both ends\nincluded, equally spaced "
-       "or, with :log, by equal ratios; or\nNAME=V,V,... takes those listed. mass_ratio, restitution, ...; "
-       "beside a\nscene in units the names and units of its file; clearance_2 is that of\nthe second of "
-       "several dampers. Given several times: all combinations",
-       "Sweep", Option::Takes::repeated_value},
+  const Options options{
+      repeated_option(
+          "--vary", "NAME=FROM:TO:N[:log]",
+          "without a plan: the number of the scene that takes N values, both ends\nincluded, equally spaced "
+          "or, with :log, by equal ratios; or\nNAME=V,V,... takes those listed. mass_ratio, restitution, "
+          "...; beside a\nscene in units the names and units of its file; clearance_2 is that of\nthe second "
+          "of several dampers. Given several times: all combinations"),
       {"--keep", "LIST",
-       "without a plan: the quantities that are kept, with commas between;\n--list-quantities lists them",
-       "Sweep"}};
-  for (const Options& more : {scene_options(), engine_options()})
-    options.insert(options.end(), more.begin(), more.end());
-  return options;
+       "without a plan: the quantities that are kept, with commas between;\n--list-quantities lists them"}};
+  return together({in_group("Sweep", options), scene_options(), engine_options()});
 }
-
-// "-o,--output" -> "--output".
-std::string long_name(const std::string& name) { return name.substr(name.rfind(',') + 1); }
 
 Plan plan_of_options(Arguments& arguments) {
   Plan plan;
@@ -144,8 +119,8 @@ Plan plan_of(Arguments& arguments) {
   const auto file = arguments.file("PLAN");
   if (!file) return plan_of_options(arguments);
   for (const Option& option : options_of_plan())
-    if (const std::string name = long_name(option.name); arguments.given(name))
-      arguments.reject(name, "cannot be given beside a plan, which says it");
+    if (arguments.given(option.name))
+      arguments.reject(option.name, "cannot be given beside a plan, which says it");
   arguments.finish();
   return read_plan(*file, find_named_file);
 }
@@ -156,12 +131,12 @@ struct Part {
 Part part_of(Arguments& arguments) {
   const auto text = arguments.text("--part");
   if (!text) return {};
-  const std::size_t slash = text->find('/');
-  const auto part = parse_integer(text->substr(0, slash)),
-             parts = slash == std::string::npos ? std::nullopt : parse_integer(text->substr(slash + 1));
-  if (part && parts && *part >= 1 && *part <= *parts && *parts <= most_parts) return {*part, *parts};
-  arguments.reject("--part", "must be K/N with 1 <= K <= N <= " + std::to_string(most_parts) + ", got " +
-                                 in_quotes(*text));
+  if (const auto numbers = parts_of(*text, '/'); numbers.size() == 2) {
+    const auto part = parse_integer(numbers[0]), parts = parse_integer(numbers[1]);
+    if (part && parts && *part >= 1 && *part <= *parts && *parts <= most_parts) return {*part, *parts};
+  }
+  arguments.reject("--part",
+                   filled("must be K/N with 1 <= K <= N <= {}, got {}", most_parts, in_quotes(*text)));
   return {};
 }
 
@@ -182,10 +157,9 @@ void require_known_format(Arguments& arguments, const std::optional<std::string>
   if (is_standard_output(output))
     arguments.reject("--output", "must be a file, beside which a description of it is written, got \"-\"");
   if (output && is_hdf5(*output) && !has_hdf5())
-    arguments.reject(
-        "--output",
-        "asks for HDF5, but the program was built without the HDF5 library (Debian: libhdf5-dev); "
-        "named *.csv the table is CSV");
+    arguments.reject("--output",
+                     "asks for HDF5, but the program was built without the HDF5 library (Debian: "
+                     "libhdf5-dev); named *.csv the table is CSV");
 }
 
 // Returns a duration for reading: "42 s", "17 min", "3.5 h".
@@ -203,7 +177,7 @@ std::string bytes_text(double bytes) {
 }
 
 // Makes a few of the runs and reports how long all take.
-void tell_size(const Plan& plan, const RowRange& range, const Threads& threads) {
+void print_size(const Plan& plan, const RowRange& range, const Threads& threads) {
   constexpr std::int64_t most_tried = 16;
   constexpr double long_enough = 2;  // seconds
   const std::int64_t tried = std::min(most_tried, range.size());
@@ -222,44 +196,42 @@ void tell_size(const Plan& plan, const RowRange& range, const Threads& threads) 
   const double each = made == 0 ? 0 : seconds_since(begin) / double(made), runs = double(range.size());
   const std::int64_t at_once =
       std::min<std::int64_t>(number_of(threads), std::max<std::int64_t>(1, range.size()));
-  write_standard_output(std::to_string(range.size()) + " runs of " + std::to_string(runs_of(plan)) +
-                        ", about " + duration_text(each * runs / double(at_once)) + " with " +
-                        std::to_string(at_once) + (at_once == 1 ? " thread" : " threads") +
-                        ", a table of about " + bytes_text(made == 0 ? 0 : bytes / double(made) * runs) +
-                        ", judged by " + std::to_string(made) + " of the runs\n");
+  write_standard_output(filled(
+      "{} runs of {}, about {} with {} {}, a table of about {}, judged by {} of the runs\n", range.size(),
+      runs_of(plan), duration_text(each * runs / double(at_once)), at_once,
+      at_once == 1 ? "thread" : "threads", bytes_text(made == 0 ? 0 : bytes / double(made) * runs), made));
 }
 
 // Makes the missing rows of a share.
 void make_share(ShareWriter& share, const ShareHead& head, const fs::path& file, const Threads& threads) {
   const RowRange range = rows_of_part(head.plan, head.part, head.parts);
   const auto say_what_is_kept = [&] {
-    if_interrupted_say(std::to_string(share.kept()) + " of " + std::to_string(range.size()) +
-                       " runs are kept in " + file.string() + "; the same command goes on from there");
+    if_interrupted_say(filled("{} of {} runs are kept in {}; the same command goes on from there",
+                              share.kept(), range.size(), file.string()));
   };
   say_what_is_kept();
   const std::int64_t before = share.rows();
   ProgressOnStderr progress("sweep");
   const auto begin = Clock::now();
-  double told = 0;
+  double reported = 0;
   for_each_in_order(
       range.size() - before, threads,
       [&](std::int64_t i) { return row_of(head.plan, range.begin + before + i); },
       [&](const std::string& row) {
         share.append(row);
         const double seconds = seconds_since(begin);
-        if (seconds - told < 0.5) return;
-        told = seconds;
+        if (seconds - reported < 0.5) return;
+        reported = seconds;
         const double rate = double(share.rows() - before) / seconds;
-        progress(std::to_string(share.rows()) + " of " + std::to_string(range.size()) + " runs, " +
-                 rounded_text(rate, 3) + " in a second, " +
-                 duration_text(double(range.size() - share.rows()) / rate) + " left");
+        progress(filled("{} of {} runs, {} in a second, {} left", share.rows(), range.size(),
+                        rounded_text(rate, 3), duration_text(double(range.size() - share.rows()) / rate)));
         say_what_is_kept();
       });
   share.finish();
 }
 
 std::string list_of_quantities() {
-  std::vector<std::vector<std::string>> rows{{"quantity", "unit", "in units", "what"}};
+  Rows rows{{"quantity", "unit", "in units", "what"}};
   for (const Quantity& each : all_quantities()) {
     const auto unit = [&](bool in_units) {
       const std::string text(unit_of(each.dimension, in_units));
@@ -288,13 +260,12 @@ int make_sweep(Arguments& arguments) {
   head.parts = part.parts;
   require_known_format(arguments, output);
   const std::string description = output.value_or("") + ".json";
-  const std::vector<fs::path> inputs{arguments.text("PLAN").value_or(""),
-                                     arguments.text("--scene").value_or("")};
+  const std::vector<fs::path> inputs{arguments.text("PLAN").value_or(""), scene_name_of(arguments)};
   arguments.reject_overwriting("--output", output, inputs);
   if (output) arguments.reject_overwriting("--output", description, inputs);
   arguments.finish();
   if (dry_run) {
-    tell_size(head.plan, rows_of_part(head.plan, head.part, head.parts), threads);
+    print_size(head.plan, rows_of_part(head.plan, head.part, head.parts), threads);
     return 0;
   }
   require_writable(*output);
@@ -313,15 +284,10 @@ int make_sweep(Arguments& arguments) {
 }
 
 int merge(Arguments& arguments) {
-  const auto output = arguments.file("--output");
-  std::vector<fs::path> files;
-  if (const auto first = arguments.file("PART")) files.emplace_back(*first);
-  for (const std::string& more : arguments.more()) {
-    if (more.starts_with('-')) throw UsageError({Problem{"", "unknown argument " + in_quotes(more)}});
-    files.emplace_back(more);
-  }
+  const std::vector<std::string> names = arguments.files("PART");
+  const std::vector<fs::path> files(names.begin(), names.end());
   if (files.empty()) arguments.reject("PART", "must be given: the files that sweep --part has written");
-  if (!output) arguments.reject("--output", "must be given: the table is written there");
+  const auto output = arguments.required_file("--output", "the table is written there");
   arguments.reject_overwriting("--output", output, files);
   require_known_format(arguments, output);
   arguments.finish();
@@ -333,56 +299,48 @@ int merge(Arguments& arguments) {
 }  // namespace
 
 Command sweep_command() {
-  Command command{.name = "sweep",
-                  .description =
-                      "Simulate a scene with many other numbers, and keep what is asked for of each run as "
-                      "one table."};
-  command.options = {
-      input_option("PLAN", "FILE", "a JSON file that says what varies and what is kept (docs/sweeps.md)"),
-      {"--list-quantities", "", "print what can be kept, with its units, and exit", "Sweep",
-       Option::Takes::nothing},
-      {"--dry-run", "",
-       "only print how many runs there are, about how long they take and how\nlarge the table is", "Sweep",
-       Option::Takes::nothing},
-      {"--part", "K/N", "make only part K of N, in the file OUTPUT.part-K-of-N; merge joins the\nparts",
-       "Sweep"},
+  const Options own{
+      input_option("PLAN", "FILE", "a JSON file that says what varies and what is kept (docs/sweeps.md)")};
+  const Options options{
+      flag_option("--list-quantities", "print what can be kept, with its units, and exit"),
+      flag_option("--dry-run",
+                  "only print how many runs there are, about how long they take and how\nlarge the table is"),
+      {"--part", "K/N", "make only part K of N, in the file OUTPUT.part-K-of-N; merge joins the\nparts"},
       {"-o,--output", "FILE",
        "the table, CSV or, named *.h5, HDF5; beside it FILE.json says what it\nholds. Interrupted, the same "
-       "command goes on",
-       "Sweep"},
+       "command goes on"},
       threads_option()};
-  command.options.back().group = "Sweep";
-  for (const Option& option : options_of_plan()) command.options.push_back(option);
-  command.footer =
-      "Each run has a row: its number, the numbers that vary, the quantities, \"end\" and \"problem\". A run "
-      "that\n"
-      "fails has the reason there, and the sweep goes on. The table has the same bytes with any number of "
-      "threads\n"
-      "or parts, interrupted or not. Lengths given and kept are in units of the clearance, beside a scene in "
-      "units\n"
-      "in mm; --list-quantities has the other units.\n\n"
-      "Examples:\n"
-      "  impact-damper sweep --until-amplitude 0.03 --vary mass_ratio=0.005:0.08:40:log \\\n"
-      "    --vary restitution=0.4,0.6,0.8 --keep time_to_amplitude=0.6,impacts -o map.csv\n"
-      "  impact-damper sweep plan.json --part 3/8 -o map.csv";
-  command.act = make_sweep;
-  return command;
+  return {
+      .name = "sweep",
+      .description =
+          "Simulate a scene with many other numbers, and keep what is asked for of each run as one table.",
+      .options = together({own, in_group("Sweep", options), options_of_plan()}),
+      .footer =
+          R"(Each run has a row: its number, the numbers that vary, the quantities, "end" and "problem". A run that
+fails has the reason there, and the sweep goes on. The table has the same bytes with any number of threads
+or parts, interrupted or not. Lengths given and kept are in units of the clearance, beside a scene in units
+in mm; --list-quantities has the other units.
+
+Examples:
+  impact-damper sweep --until-amplitude 0.03 --vary mass_ratio=0.005:0.08:40:log \
+    --vary restitution=0.4,0.6,0.8 --keep time_to_amplitude=0.6,impacts -o map.csv
+  impact-damper sweep plan.json --part 3/8 -o map.csv)",
+      .act = make_sweep};
 }
 
 Command merge_command() {
-  Command command{
-      .name = "merge",
-      .description = "Join the parts that sweep --part has made into the table that one sweep makes."};
-  command.options = {input_option("PART", "FILE", "the parts, in any order"),
-                     {"-o,--output", "FILE",
-                      "the table, CSV or, named *.h5, HDF5; beside it FILE.json says what it\nholds"}};
-  command.takes_more = true;
-  command.footer =
-      "Parts must be of one plan and one version of the program, whole, and none missing or doubled.\n\n"
-      "Example:\n"
-      "  impact-damper merge map.csv.part-* -o map.csv";
-  command.act = merge;
-  return command;
+  return {.name = "merge",
+          .description = "Join the parts that sweep --part has made into the table that one sweep makes.",
+          .options = {input_option("PART", "FILE", "the parts, in any order"),
+                      {"-o,--output", "FILE",
+                       "the table, CSV or, named *.h5, HDF5; beside it FILE.json says what it\nholds"}},
+          .footer =
+              R"(Parts must be of one plan and one version of the program, whole, and none missing or doubled.
+
+Example:
+  impact-damper merge map.csv.part-* -o map.csv)",
+          .act = merge,
+          .takes_more = true};
 }
 
 }  // namespace impact_damper::cli

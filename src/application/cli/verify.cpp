@@ -1,11 +1,8 @@
 // `verify`: checks the claims, one by one, against the runs.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <iostream>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <utility>
@@ -16,16 +13,9 @@
 #include "application/reproduction/power.hpp"
 #include "application/reproduction/scene_runs.hpp"
 #include "application/reproduction/words.hpp"
-#include "arguments.hpp"
 #include "commands.hpp"
-#include "impact_damper/base/errors.hpp"
-#include "impact_damper/base/number_text.hpp"
-#include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/json_writer.hpp"
-#include "interruption.hpp"
-#include "output.hpp"
 #include "power_table.hpp"
-#include "project_files.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -41,7 +31,7 @@ struct Verified {
   Verdict recorded = Verdict::reproduced;
   bool as_recorded() const { return verdict == recorded; }
   // Returns one of the claim's templates, filled with what was measured.
-  std::string filled(const std::string& text) const {
+  std::string with_numbers(const std::string& text) const {
     NamedSpreads spreads = also;
     spreads[""] = ours;
     return in_words(text, spreads);
@@ -53,39 +43,21 @@ std::string allowed_text(const Claim& claim) { return allowed_in_words(claim.wor
 // The texts in the columns of an open statement.
 constexpr const char *not_measured = "not measured", *open_word = "open";
 
-// Returns the number of characters, not bytes: claims are written in UTF-8.
-std::size_t width(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
-}
-
 std::string table_text(const std::vector<Verified>& all, const std::vector<OpenStatement>& open) {
-  std::vector<std::vector<std::string>> rows{
-      {"claim", "paper", "allowed", "ours (median, extremes of the ensemble)", "verdict"}};
+  Rows rows{{"claim", "paper", "allowed", "ours (median, extremes of the ensemble)", "verdict"}};
   for (const Verified& each : all)
     rows.push_back({each.claim->id, each.claim->printed, allowed_text(*each.claim), each.words,
                     std::string(name_of(each.verdict)) +
                         (each.as_recorded() ? "" : " <-- recorded: " + std::string(name_of(each.recorded)))});
   for (const OpenStatement& each : open)
     rows.push_back({each.id, each.printed, not_measured, not_measured, open_word});
-  std::vector<std::size_t> widths(rows.front().size());
-  for (const auto& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width(row[i]));
-  std::string text;
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      text += row[i];
-      if (i + 1 < row.size()) text.append(widths[i] - width(row[i]) + 2, ' ');
-    }
-    text += '\n';
-  }
-  return text;
+  return aligned(rows);
 }
 
 std::string open_text(const std::vector<OpenStatement>& open) {
   if (open.empty()) return "";
-  return "; besides, " + std::to_string(open.size()) +
-         (open.size() == 1 ? " statement of the paper is open" : " statements of the paper are open");
+  return filled("; besides, {} {} open", open.size(),
+                open.size() == 1 ? "statement of the paper is" : "statements of the paper are");
 }
 
 std::string summary_text(const std::vector<Verified>& all, const std::vector<OpenStatement>& open) {
@@ -104,46 +76,37 @@ std::string summary_text(const std::vector<Verified>& all, const std::vector<Ope
                                                               : name_of(verdict));
     return text + "; ";
   };
-  const auto changed = std::ranges::count_if(all, [](const Verified& each) { return !each.as_recorded(); });
+  const auto changed = std::ranges::count(all, false, &Verified::as_recorded);
   return of_source(Source::paper, " claims of the paper",
                    {Verdict::reproduced, Verdict::not_reproduced, Verdict::corrected, Verdict::derived}) +
          of_source(Source::quoted, " of studies that it quotes",
                    {Verdict::reproduced, Verdict::not_reproduced}) +
          of_source(Source::ours, " of ours", {Verdict::holds, Verdict::does_not_hold}) +
-         (changed == 0 ? "all as recorded" : std::to_string(changed) + " not as recorded") + open_text(open) +
-         "\n";
-}
-
-std::string cell(std::string text) {  // of a Markdown table
-  for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, 1, '\\');
-  return text;
+         (changed == 0 ? "all as recorded" : filled("{} not as recorded", changed)) + open_text(open) + "\n";
 }
 
 std::string markdown_text(const std::vector<Verified>& all, const std::vector<OpenStatement>& open,
                           const std::string& engine) {
-  std::string text =
-      "| id | section | claim | paper | ours | allowed | because | verdict "
-      "|\n|---|---|---|---|---|---|---|---|\n";
+  Rows rows{{"id", "section", "claim", "paper", "ours", "allowed", "because", "verdict"}};
   for (const Verified& each : all) {
     const Claim& claim = *each.claim;
-    text += "| " + claim.id + " | " + cell(claim.section) + " | " + cell(claim.statement) + " | " +
-            cell(claim.printed) + " | " + cell(each.words) + " | " + allowed_text(claim) + " | " +
-            cell(claim.allowed.reason) + " | " + std::string(name_of(each.verdict)) + " |\n";
+    rows.push_back({claim.id, claim.section, claim.statement, claim.printed, each.words, allowed_text(claim),
+                    claim.allowed.reason, std::string(name_of(each.verdict))});
   }
   for (const OpenStatement& each : open)
-    text += "| " + each.id + " | " + cell(each.section) + " | " + cell(each.statement) + " | " +
-            cell(each.printed) + " | " + not_measured + " | " + not_measured + " | " +
-            cell(each.explanation) + " | " + open_word + " |\n";
-  text += "\n" + summary_text(all, open);
+    rows.push_back({each.id, each.section, each.statement, each.printed, not_measured, not_measured,
+                    each.explanation, open_word});
+  std::string text = markdown_table(rows) + "\n" + summary_text(all, open);
   for (const Verified& each : all) {
     const auto otherwise = each.claim->with_engine.find(engine);
     if (otherwise != each.claim->with_engine.end())
-      text += "\n**" + each.claim->id + "** (" + engine + ", " + std::string(name_of(each.verdict)) + "). " +
-              each.filled(otherwise->second.explanation) + "\n";
+      text += filled("\n**{}** ({}, {}). {}\n", each.claim->id, engine, name_of(each.verdict),
+                     each.with_numbers(otherwise->second.explanation));
     if (each.claim->explanation.empty()) continue;
-    text += "\n**" + each.claim->id + "** (" + std::string(name_of(each.verdict)) + "). " +
-            each.filled(each.claim->explanation) +
-            (each.claim->evidence.empty() ? "" : " Evidence: " + each.filled(each.claim->evidence)) + "\n";
+    text +=
+        filled("\n**{}** ({}). {}{}\n", each.claim->id, name_of(each.verdict),
+               each.with_numbers(each.claim->explanation),
+               each.claim->evidence.empty() ? "" : " Evidence: " + each.with_numbers(each.claim->evidence));
   }
   return text;
 }
@@ -177,11 +140,8 @@ std::string verdicts_text(const std::vector<Verified>& all, const std::vector<Op
   }
   out.close();
   if (!open.empty()) {
-    std::vector<std::string> ids;
-    ids.reserve(open.size());
-    for (const OpenStatement& each : open) ids.push_back(each.id);
     out.new_line();
-    out.field("open", ids);
+    out.field("open", texts_of(open, &OpenStatement::id));
   }
   out.close();
   return out.finish() + '\n';
@@ -219,7 +179,7 @@ void check_figures(const std::vector<Figure>& figures, const fs::path& file,
     const std::vector<std::string>& rests_on = figures[i].claims;
     for (std::size_t j = 0; j < rests_on.size(); ++j) {
       if (ids.contains(rests_on[j])) continue;
-      problems.push_back({"/figures/" + std::to_string(i) + "/claims/" + std::to_string(j),
+      problems.push_back({filled("/figures/{}/claims/{}", i, j),
                           "must be the id of a claim, got the string " + in_quotes(rests_on[j])});
     }
   }
@@ -269,15 +229,12 @@ int find_power(const SceneRuns& folders, std::vector<Claim> claims, const std::s
   table.unsettled = input.left_out = unsettled_claims(input, table.ensembles);
   const Power power(std::move(input));
   if_interrupted_say("no table is made" + (json_file ? "; " + left_as_it_was(*json_file) : ""));
-  std::mutex telling;
-  auto told = std::chrono::steady_clock::now();
-  table.rows = power.table([&](std::size_t done, std::size_t searches) {
-    const std::lock_guard lock(telling);
-    const auto now = std::chrono::steady_clock::now();
-    if (now - told < std::chrono::seconds(2)) return;
-    told = now;
-    std::cerr << "verify: " << done << " of " << searches << " searches" << std::endl;
-  });
+  {
+    ProgressOnStderr progress("verify");
+    table.rows = power.table([&](std::size_t done, std::size_t searches) {
+      progress(filled("{} of {} searches", done, searches));
+    });
+  }
   if (json_file) write_output(json_file, json_text(table));
   if (markdown_file) write_output(markdown_file, markdown_text(table));
   if (!is_standard_output(json_file) && !is_standard_output(markdown_file))
@@ -287,12 +244,11 @@ int find_power(const SceneRuns& folders, std::vector<Claim> claims, const std::s
 
 int verify(Arguments& arguments) {
   EnsembleOptions ensemble;
-  ensemble.members =
-      arguments.whole_number("--members", within(1, double(most_members))).value_or(ensemble.members);
+  arguments.read("--members", ensemble.members, within(1, double(most_members)));
   ensemble.threads = threads_of(arguments);
   const fs::path claims_file = arguments.file("--claims").value_or(project_file("data/claims.json")),
                  runs_folder = arguments.file("--runs").value_or(project_file("build/runs/exact"));
-  const SceneRuns folders{runs_folder, arguments.file("--scenes").value_or(project_file("data/scenes"))};
+  const SceneRuns folders{runs_folder, scenes_folder(arguments)};
   const std::string catalogue_file =
       arguments.file("--catalogue").value_or(project_file("figures/catalogue.json"));
   const auto verdicts_file = arguments.file("--output"), markdown_file = arguments.file("--markdown");
@@ -310,12 +266,7 @@ int verify(Arguments& arguments) {
   std::vector<fs::path> inputs{claims_file};
   if (has_catalogue) inputs.emplace_back(catalogue_file);
   for (const std::set<std::string>* list : {&names.scenes, &names.further})
-    for (const std::string& name : *list) {
-      const fs::path run = folders.file_of(name);
-      inputs.push_back(run);
-      for (std::int64_t member = 2; member <= most_members; ++member)
-        inputs.push_back(member_file(run, member));
-    }
+    for (const std::string& name : *list) add_ensemble(inputs, folders.file_of(name));
   for (const std::string& name : names.responses) inputs.push_back(folders.file_of(name));
   reject_other_endings(arguments, "--output", verdicts_file, {Format::json});
   reject_other_endings(arguments, "--markdown", markdown_file, {Format::markdown});
@@ -331,25 +282,19 @@ int verify(Arguments& arguments) {
   Runs runs(runs_folder, ensemble, catalogue.runs);
   for (auto& [name, response] : responses) runs.put(name, std::move(response));
   std::vector<Verified> all;
-  const auto start = std::chrono::steady_clock::now();
-  auto told = start;
+  ProgressOnStderr progress("verify");
   for (const Claim& claim : claims) {
-    if_interrupted_say(std::to_string(claims.size() - all.size()) + " of " + std::to_string(claims.size()) +
-                       " claims are left" + (verdicts_file ? "; " + left_as_it_was(*verdicts_file) : ""));
-    const auto now = std::chrono::steady_clock::now();
-    if (now - start > std::chrono::seconds(2) && now - told > std::chrono::seconds(1)) {
-      std::cerr << "verify: " << all.size() << " of " << claims.size() << " claims, now " << claim.id
-                << std::endl;
-      told = now;
-    }
+    if_interrupted_say(filled("{} of {} claims are left{}", claims.size() - all.size(), claims.size(),
+                              verdicts_file ? "; " + left_as_it_was(*verdicts_file) : ""));
+    progress(filled("{} of {} claims, now {}", all.size(), claims.size(), claim.id));
     try {
       Verified& verified = all.emplace_back(Verified{.claim = &claim, .ours = measure(runs, claim.measure)});
       for (const auto& [name, call] : claim.also) verified.also[name] = measure(runs, call);
-      verified.words = verified.filled(claim.words);
+      verified.words = verified.with_numbers(claim.words);
       verified.verdict = judge(claim, verified.ours.median);
     } catch (const InvalidArguments& error) {
       std::vector<Problem> problems = error.problems();
-      for (Problem& problem : problems) problem.field.insert(0, "claim " + claim.id + ": ");
+      for (Problem& problem : problems) problem.field = filled("claim {}: {}", claim.id, problem.field);
       throw InvalidArguments(problems);
     } catch (const std::invalid_argument& problem) {
       throw InvalidArguments({{"claim " + claim.id, problem.what()}});
@@ -362,51 +307,49 @@ int verify(Arguments& arguments) {
   if (!is_standard_output(verdicts_file) && !is_standard_output(markdown_file))
     write_standard_output(table_text(all, read.open) + "\n" +
                           (engine.empty() ? "" : "engine " + engine + ", ") + summary_text(all, read.open));
-  return std::all_of(all.begin(), all.end(), [](const Verified& each) { return each.as_recorded(); }) ? 0 : 1;
+  return std::ranges::all_of(all, &Verified::as_recorded) ? 0 : 1;
 }
 
 }  // namespace
 
 Command verify_command() {
-  Command command{.name = "verify",
-                  .description = "Hold the runs against everything the paper reports, claim by claim."};
-  command.options = {
-      input_option("--claims", "FILE", "what the paper reports; default data/claims.json"),
-      input_option("--runs", "FOLDER",
-                   "folder of run files, NAME.json of each scene, further run and\n"
-                   "response, with the other members of its ensemble (run --members);\n"
-                   "default build/runs/exact"),
-      scenes_option(),
-      {.name = "--power",
-       .help =
-           "instead of the verdicts, the smallest change of each\nnumber that turns one of them (minutes)",
-       .takes = Option::Takes::nothing},
-      input_option("--catalogue", "FILE",
-                   "lists the further runs; default figures/catalogue.json. If given, the\n"
-                   "claims that its figures rest on must exist"),
-      {"--members", "N",
-       "use the first N of each ensemble, the run file itself among them;\n"
-       "1 to 100, default 16; --power simulates them"},
-      {"-o,--output", "FILE", "write the verdicts as JSON"},
-      {"--markdown", "FILE", "write the table, with every explanation, as Markdown"},
-      threads_option()};
-  command.footer =
-      "Prints one line for each claim: what the paper prints, what is allowed, what comes out here (median\n"
-      "and extremes over an ensemble of perturbed initial conditions), and the verdict on the median:\n"
-      "reproduced, not reproduced, corrected, or derived where it cannot fail. Claims that are ours and not\n"
-      "the paper's hold or do not hold, and are counted apart. Exit code 1 if a verdict differs from the\n"
-      "recorded one, either way. A run that was altered, contradicts itself or is of another scene or "
-      "engine\n"
-      "than the others is rejected.\n\n"
-      "With --power: one line for each number of the scenes, of the analysis and of what runs record, with "
-      "the\n"
-      "smallest change of it that turns a verdict, and the claims that it turns.\n\n"
-      "Examples:\n"
-      "  impact-damper verify\n"
-      "  impact-damper verify --power --markdown power.md\n"
-      "  impact-damper verify --runs build/runs/cem --members 1 --markdown verdicts.md";
-  command.act = verify;
-  return command;
+  return {
+      .name = "verify",
+      .description = "Hold the runs against everything the paper reports, claim by claim.",
+      .options = {input_option("--claims", "FILE", "what the paper reports; default data/claims.json"),
+                  input_option(
+                      "--runs", "FOLDER",
+                      "folder of run files, NAME.json of each scene, further run and\nresponse, with the "
+                      "other members of its ensemble (run --members);\ndefault build/runs/exact"),
+                  scenes_option(),
+                  flag_option("--power",
+                              "instead of the verdicts, the smallest change of each\nnumber that turns one "
+                              "of them (minutes)"),
+                  input_option("--catalogue", "FILE",
+                               "lists the further runs; default figures/catalogue.json. If given, "
+                               "the\nclaims that its figures rest on must exist"),
+                  {"--members", "N",
+                   "use the first N of each ensemble, the run file itself among them;\n1 to 100, default 16; "
+                   "--power simulates them"},
+                  {"-o,--output", "FILE", "write the verdicts as JSON"},
+                  {"--markdown", "FILE", "write the table, with every explanation, as Markdown"},
+                  threads_option()},
+      .footer =
+          R"(Prints one line for each claim: what the paper prints, what is allowed, what comes out here (median
+and extremes over an ensemble of perturbed initial conditions), and the verdict on the median:
+reproduced, not reproduced, corrected, or derived where it cannot fail. Claims that are ours and not
+the paper's hold or do not hold, and are counted apart. Exit code 1 if a verdict differs from the
+recorded one, either way. A run that was altered, contradicts itself or is of another scene or engine
+than the others is rejected.
+
+With --power: one line for each number of the scenes, of the analysis and of what runs record, with the
+smallest change of it that turns a verdict, and the claims that it turns.
+
+Examples:
+  impact-damper verify
+  impact-damper verify --power --markdown power.md
+  impact-damper verify --runs build/runs/cem --members 1 --markdown verdicts.md)",
+      .act = verify};
 }
 
 }  // namespace impact_damper::cli

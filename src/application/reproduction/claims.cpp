@@ -56,8 +56,11 @@ MeasureCall read_measure(ObjectReader object) {
   const auto read_names = [&](const std::string& key, const Count& count, std::vector<std::string>& into) {
     if (count.most == 0 || !object.required(key, into, a_name, count.most) || into.size() >= count.least)
       return;
-    object.reject(key, "must name " + std::to_string(count.least) + " to " + std::to_string(count.most) +
-                           " " + key + ", got " + std::to_string(into.size()));
+    const std::string at_least =
+        count.least == count.most ? "exactly " : std::to_string(count.least) + " to ";
+    object.reject(key, "must name " + at_least + std::to_string(count.most) + " " +
+                           (count.most == 1 ? key.substr(0, key.size() - 1) : key) + ", got " +
+                           std::to_string(into.size()));
   };
   read_names("scenes", measure.scenes, call.scenes);
   read_names("responses", measure.responses, call.responses);

@@ -27,13 +27,13 @@ def damper_pieces(wasm: Path = None) -> dict:
     # Opened from a folder, a browser starts no worker that has imports and exports.
     worker = text("unpacked.js") + re.sub("^export ", "", text("../package/simulator.js"), flags=re.M) + text("worker.js")
     module = packed((wasm / "package/impact-damper.wasm").read_bytes()) if wasm else ""
-    return {"style": text("damper.css"), "module": module, "worker": worker, "script": text("page.js", "damper.js", "start.js")}
+    return {"style": text("damper.css"), "module": module, "worker": worker, "script": text("page.js", "damper.js")}
 
 
 def project_pieces(wasm: Path = None, commands: Path = None) -> dict:
     """The program in a page, likewise, and what it makes the report's tables and verdicts from; `commands` is
     build/commands.json, without which the page can have none of them made."""
-    pieces = {"program": "", "archive": "", "worker": "", "script": text("check.js", "own.js", "start_project.js"), "style": text("project.css")}
+    pieces = {"program": "", "archive": "", "worker": "", "script": text("check.js", "own.js"), "style": text("project.css")}
     if not wasm:
         return pieces
     sources = [] if not commands else [*(SOURCE / "data/scenes").glob("*.json"), *(SOURCE / "figures").glob("*.json"), SOURCE / "data/claims.json"]

@@ -1,12 +1,15 @@
-#include "interruption.hpp"
+#include "progress.hpp"
 
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <deque>
 #include <filesystem>
+#include <iostream>
+#include <system_error>
 
 #include "drawing.hpp"
 #include "impact_damper/io/file_output.hpp"
@@ -30,6 +33,41 @@ extern "C" void end(int signal) {
 }
 
 }  // namespace
+
+ProgressOnStderr::ProgressOnStderr(std::string command) : command_(std::move(command)) {
+  try {
+    reporter_ = std::thread([this] { report(); });
+  } catch (const std::system_error&) {
+    // Without a thread the work continues without messages.
+  }
+}
+
+ProgressOnStderr::~ProgressOnStderr() {
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+  }
+  changed_.notify_all();
+  if (reporter_.joinable()) reporter_.join();
+}
+
+void ProgressOnStderr::report() {
+  using namespace std::chrono_literals;
+  constexpr int first = 2, at_least_every = 10;  // seconds
+  constexpr int minute = 60;                     // after n minutes at most a line in n seconds
+  std::string reported;
+  std::unique_lock lock(mutex_);
+  for (int second = 1, last = 0; !changed_.wait_for(lock, 1s, [&] { return ended_; }); ++second) {
+    const int silent = second - last;
+    if (second < first || doing_.empty() || silent < second / minute) continue;
+    if (doing_ == reported && silent < at_least_every) continue;
+    std::cerr << command_ << ": " << doing_
+              << (doing_ == reported ? ", " + std::to_string(second) + " s since the start" : "")
+              << std::endl;
+    reported = doing_;
+    last = second;
+  }
+}
 
 void end_cleanly() {
   struct sigaction action {};
