@@ -252,8 +252,8 @@ CommonError common_error(const Scene& scene) {
     const double x = random.uniform(-4, 4), v = random.uniform(-2, 2), w = random.uniform(-2, -0.5);
     const double begin = random.uniform(0, 6);
     const SinCos<double> phase = system.forcing.phase(begin);
-    const auto end =
-        walls.short_contact.end({x, v, w, scene.force_amplitude * phase.sin, scene.force_amplitude * phase.cos});
+    const auto end = walls.short_contact.end(
+        {x, v, w, scene.force_amplitude * phase.sin, scene.force_amplitude * phase.cos});
     if (!end || !(std::abs(end->time / T - 1) < 0.05)) continue;
     auto truth = reference::applied<6>(until_T, {x, v, 0, w, phase.sin, phase.cos}), term = truth;
     const Quad rest = Quad(end->time) - Quad(T);
