@@ -120,6 +120,7 @@ using SpreadOfCurves = double (*)(const std::vector<Curve>&, double, double, int
 template <LossOrdinate which, SpreadOfCurves spread = spread_percent>
 double collapse(const Asked& asked, const RunGroup& group) {
   std::vector<Curve> curves;
+  curves.reserve(group.size());
   for (const Run* run : group) curves.push_back(loss_curve(asked, *run, which));
   return spread(curves, asked.number("from"), asked.number("to"), asked.analysis().bins);
 }

@@ -295,8 +295,8 @@ double stuck_forcing(const Asked& asked) {
       });
 }
 
-// Returns zeta_s/zeta of the paper's (9) (M9.6, M9.7), minus the coefficient of 2 omega_s zeta x' in the stuck
-// motion: a mass at rest against its wall moves with it, in a sustained contact.
+// Returns zeta_s/zeta of the paper's (9) (M9.6, M9.7), minus the coefficient of 2 omega_s zeta x' in the
+// stuck motion: a mass at rest against its wall moves with it, in a sustained contact.
 double stuck_damping(const Asked& asked) {
   Scene scene;
   scene.damper().mass_ratio = asked.number("mass_ratio");

@@ -115,6 +115,7 @@ TableBlock band_block(const Figure& figure, const FigureCurve& curve, const Figu
   for (const Run& other : std::span(source.others).first(static_cast<std::size_t>(curve.ensemble - 1)))
     members.emplace_back(figure, curve, other);
   std::vector<BandCurve> curves;
+  curves.reserve(members.size());
   for (const LossCurve& member : members)
     curves.push_back({std::span(member.loss.amplitude).first(member.kept), member.values});
   const std::string count = std::to_string(members.size());
