@@ -2,7 +2,8 @@
 r"""Many small files in one text that can be read and compared line by line: those of tests/corpus, tests/cli, tests/fuzz.
 
     packed_files.py unpack PACKED FOLDER     writes the files into FOLDER, which is made anew
-    packed_files.py add PACKED FILE...       appends each FILE, under its name without folders
+    packed_files.py add PACKED FILE...       appends each FILE, under its name without folders; of a folder all files in it, by
+                                             their paths there
 
 A line `== NAME`, or `== NAME | NOTE`, begins a file, and the lines up to the next such line are its content. Empty lines
 and lines that begin with # belong to no file. In the content \xNN stands for a byte and \\ for a backslash. A \ at the end
@@ -80,13 +81,17 @@ def main():
     if command == "unpack" and len(paths) == 2:
         unpack(*paths)
     elif command == "add" and len(paths) > 1:
-        packed, *files = paths
+        packed, *given = paths
+        files = {}
+        for path in given:
+            files |= {str(file.relative_to(path)): file for file in sorted(path.rglob("*")) if file.is_file()} if path.is_dir() else \
+                {path.name: path}
         known = read(packed)
-        for file in files:
-            if file.name in known or not HEADER.fullmatch(f"== {file.name}"):
-                sys.exit(f"{file}: must have a new name, of letters, digits, _, . and -")
+        for name, file in files.items():
+            if name in known or not HEADER.fullmatch(f"== {name}"):
+                sys.exit(f"{file}: must have a new name, of letters, digits, _, ., - and /")
         with open(packed, "a", encoding="utf-8", newline="\n") as out:
-            out.writelines(entry(file.name, file.read_bytes()) for file in files)
+            out.writelines(entry(name, file.read_bytes()) for name, file in files.items())
     else:
         sys.exit(__doc__)
 
