@@ -120,7 +120,8 @@ command_test("cli: verify writes its table as Markdown" cli
              PROPERTIES FIXTURES_REQUIRED cli_files WORKING_DIRECTORY ${made}/cli)
 python_test("cli: verdicts hold the further numbers of a claim, and what is open is no claim" cli cli/verdicts.py ${program}
             ${files} ${made}/cli/verdicts PROPERTIES FIXTURES_REQUIRED cli_files)
-# The runs of an ensemble, verdicts and a table with an ensemble's band do not depend on the number of threads.
+# The runs of an ensemble, verdicts and a table with an ensemble's band do not depend on the number of threads. At last the same
+# as CSV, in a folder for all tables.
 command_test("cli: equal bytes with any number of threads" cli
              COMMAND sh -c [[for threads in 1 2 5
                              do
@@ -139,13 +140,15 @@ command_test("cli: equal bytes with any number of threads" cli
                                diff -r runs-1 runs-$threads &&
                                cmp verdicts-1.json verdicts-$threads.json && cmp verdicts-1.txt verdicts-$threads.txt &&
                                cmp band-1.dat band-$threads.dat || exit 1
-                             done]] ${program} ${files}
+                             done
+                             mkdir -p tables && "$0" series --catalogue "$1/band.json" --runs runs-1 --scenes "$1/data/scenes" \
+                               --format csv -o tables && grep -q ^band-1, tables/fig08.csv]] ${program} ${files}
              PROPERTIES FIXTURES_REQUIRED cli_files WORKING_DIRECTORY ${made}/cli)
 
 python_test("cli: check, verify and series find runs that were altered or are of another scene or engine" cli cli/altered.py
             ${program} ${source} ${made}/cli/altered PROPERTIES COST 10)
-python_test("cli: tables as CSV hold the numbers of the tables that gnuplot draws" cli cli/csv_tables.py ${program} ${source}
-            ${made}/cli/csv_tables ${exact_runs} PROPERTIES FIXTURES_REQUIRED exact_figures)
+python_test("cli: tables as CSV hold the numbers of the tables that gnuplot draws" cli cli/csv_tables.py
+            ${source}/figures/catalogue.json ${PROJECT_BINARY_DIR}/series/exact PROPERTIES FIXTURES_REQUIRED exact_figures)
 python_test("cli: responses are as their schema says, as CSV hold the same numbers, and are not left half written" cli
             cli/responses.py ${program} ${source} ${made}/cli/responses)
 python_test("cli: with the name - a command prints what it writes to a file, and nothing else" cli cli/standard_output.py

@@ -1,6 +1,6 @@
 """Each figure's table as CSV, read by Python's csv module, holds the numbers of the table that gnuplot reads.
 
-    csv_tables.py PROGRAM SOURCE FOLDER RUNS        FOLDER, made anew, is for tables; RUNS has the catalogue's runs
+    csv_tables.py CATALOGUE TABLES        TABLES has those of the catalogue, as the build makes them in both forms
 
 Both are read by their own rules: of the one the header, block names, quoted headings and blank lines, of the other
 rows of six cells. Numbers are compared as texts: both have every digit.
@@ -11,9 +11,8 @@ import pathlib
 import re
 import sys
 
-from trial import call, demand, finish, folder, read, source
-
-runs = pathlib.Path(sys.argv[4]).resolve()
+catalogue, tables = (pathlib.Path(word) for word in sys.argv[1:3])
+faults = []
 # Columns that are ends of an interval at x, by block and number; all others are curves.
 ENDS = {("band", 2): "low", ("band", 3): "high", ("spread", 2): "low", ("spread", 3): "high"}
 ENDS_OF_PHASES = {("stuck", 2): "low", ("stuck", 3): "high"}
@@ -48,21 +47,19 @@ def wanted_rows(kind, name, headings, rows):
                    row[low[0] - 1] if low and beside else "", row[high[0] - 1] if high and beside else "")
 
 
-(folder / "tables").mkdir()
-catalogue = json.loads((source / "figures/catalogue.json").read_text(encoding="utf-8"))
-series = ["series", "--catalogue", source / "figures/catalogue.json", "--scenes", source / "data/scenes", "--runs", runs,
-          "-o", "tables"]
-call(*series)
-call(*series, "--format", "csv")
+def demand(holds, what):
+    if not holds:
+        faults.append(what)
+
 
 seen = set()
-for figure in catalogue["figures"]:
+for figure in json.loads(catalogue.read_text(encoding="utf-8"))["figures"]:
     if figure["table"] == "drawing":
         continue
     stem = pathlib.Path(figure["script"]).stem
-    text = read(f"tables/{stem}.dat")
+    text = (tables / f"{stem}.dat").read_text(encoding="utf-8")
     wanted = [row for block in gnuplot_blocks(text) for row in wanted_rows(figure["table"], *block)]
-    with open(folder / f"tables/{stem}.csv", newline="", encoding="utf-8") as file:
+    with open(tables / f"{stem}.csv", newline="", encoding="utf-8") as file:
         header, *given = map(tuple, csv.reader(file))
     demand(header == ("block", "curve", "x", "y", "low", "high"), f"{stem}.csv: its header is {header}")
     at = next((i for i, pair in enumerate(zip(given, wanted)) if pair[0] != pair[1]), min(len(given), len(wanted)))
@@ -73,4 +70,5 @@ for figure in catalogue["figures"]:
         list(map(float, filter(None, cells[2:])))
 # Values, bands, a value with its band: each kind is there. Gaps depend on a chaotic decay; tests/series.cpp has one.
 demand(seen - {"----"} == {"nn--", "n-nn", "nnnn"}, f"kinds of rows: {sorted(seen)}")
-finish()
+print("\n".join(fault[:600] for fault in faults))
+sys.exit(bool(faults))
