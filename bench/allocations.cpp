@@ -1,4 +1,4 @@
-#include "allocations.hpp"
+#include "measurements.hpp"
 
 #include <cstdlib>
 #include <new>

@@ -1,4 +1,4 @@
-#include "figure_set.hpp"
+#include "measurements.hpp"
 
 #include <map>
 

@@ -5,13 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "allocations.hpp"
 #include "counted.hpp"
-#include "figure_set.hpp"
-#include "functions.hpp"
-#include "many_runs.hpp"
-#include "sweeps.hpp"
-#include "threads.hpp"
+#include "measurements.hpp"
 #include "time_error.hpp"
 
 namespace impact_damper::bench {

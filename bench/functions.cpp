@@ -1,4 +1,4 @@
-#include "functions.hpp"
+#include "measurements.hpp"
 
 #include <algorithm>
 #include <array>

@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "allocations.hpp"
-#include "figure_set.hpp"
 #include "findings.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/simulate.hpp"

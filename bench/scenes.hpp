@@ -34,7 +34,7 @@ Scene compared_part(const BenchScene& scene);
 //   S8  a slow, a fast and a very fast force, from x0 = 0.1, the mass amid its travel, and the steady
 //       velocity of the empty structure, so that x moves by about 1 and the walls are met again and again
 // nu = 0.02, e = 0.6, k = 1e4; zeta = 0 but in S4 and S8, no force in S1, S2, S3, S5. (S6, the figures, is no
-// scene: figure_set.hpp.)
+// scene: measurements.hpp.)
 //   S9  one damper, and lists of 2, 5, 20 and 100: a free decay from x0 = 3 to t = 101. They share nu = 0.02
 //       and k = 1e8 equally, so that a contact is short beside the time between two; e = 0.8, clearances from
 //       1 up to below 1.7, and the masses begin in the left halves of their cavities. No mass comes to rest

@@ -1,4 +1,4 @@
-#include "sweeps.hpp"
+#include "measurements.hpp"
 
 #include <cmath>
 

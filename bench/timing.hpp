@@ -20,7 +20,7 @@ struct Timing {
   Spread seconds;               // CPU time of one run
   Spread reference_operations;  // each repeat by the mean of the reference operations before and after it
   Spread reference_operation;   // seconds
-  int repeats = 0, undisturbed = 0;  // in all, and those on a core of one's own (own_core.hpp)
+  int repeats = 0, undisturbed = 0;  // in all, and those on a core of one's own (timing.cpp)
   int runs = 0;                      // in each repeat
 };
 // Each repeat lasts a fiftieth of a second at least. A first run, not counted, tells how many runs make one

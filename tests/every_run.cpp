@@ -1,6 +1,7 @@
 // Every run that a test program makes, in its own code or through the library's, is held against itself: the
 // linker (--wrap, CMakeLists.txt) leads simulate()'s call of Recorder::finish(), by which a run is complete,
-// here.
+// here. doctest and its main are compiled with it, once for all tests.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include "impact_damper/analysis/consistency.hpp"

@@ -2,12 +2,15 @@
 r"""Many small files in one text that can be read and compared line by line: those of tests/corpus, tests/cli, tests/fuzz.
 
     packed_files.py unpack PACKED FOLDER     writes the files into FOLDER, which is made anew
-    packed_files.py add PACKED FILE...       appends each FILE, under its name without folders
+    packed_files.py add PACKED FILE...       appends each FILE, under its name without folders; of a folder all files in it, by
+                                             their paths there. PACKED need not be there yet
 
 A line `== NAME`, or `== NAME | NOTE`, begins a file, and the lines up to the next such line are its content. Empty lines
 and lines that begin with # belong to no file. In the content \xNN stands for a byte and \\ for a backslash. A \ at the end
-of a line says that the content has no line break there.
+of a line says that the content has no line break there. A text whose name ends in .gz is compressed: many files that
+programs have made and no one reads, such as the fuzzer's.
 """
+import gzip
 import pathlib
 import re
 import shutil
@@ -23,10 +26,15 @@ def byte_of(escape):
     return bytes.fromhex(escape[1].decode()) if escape[1] else escape[2] or b""
 
 
+def text_of(packed):
+    content = packed.read_bytes()
+    return gzip.decompress(content) if packed.suffix == ".gz" else content
+
+
 def read(packed):
     """Of each file in `packed`, by its name: its note and its content."""
     files, lines = {}, None
-    for number, line in enumerate(packed.read_bytes().split(b"\n"), 1):
+    for number, line in enumerate(text_of(packed).split(b"\n"), 1):
         if line.startswith(b"=="):
             header = HEADER.fullmatch(line.decode())
             if not header or header[1] in files:
@@ -80,13 +88,17 @@ def main():
     if command == "unpack" and len(paths) == 2:
         unpack(*paths)
     elif command == "add" and len(paths) > 1:
-        packed, *files = paths
-        known = read(packed)
-        for file in files:
-            if file.name in known or not HEADER.fullmatch(f"== {file.name}"):
-                sys.exit(f"{file}: must have a new name, of letters, digits, _, . and -")
-        with open(packed, "a", encoding="utf-8", newline="\n") as out:
-            out.writelines(entry(file.name, file.read_bytes()) for file in files)
+        packed, *given = paths
+        files = {}
+        for path in given:
+            files |= {str(file.relative_to(path)): file for file in sorted(path.rglob("*")) if file.is_file()} if path.is_dir() else \
+                {path.name: path}
+        known, text = (read(packed), text_of(packed)) if packed.exists() else ({}, b"")
+        for name, file in files.items():
+            if name in known or not HEADER.fullmatch(f"== {name}"):
+                sys.exit(f"{file}: must have a new name, of letters, digits, _, ., - and /")
+        text += "".join(entry(name, file.read_bytes()) for name, file in files.items()).encode()
+        packed.write_bytes(gzip.compress(text, mtime=0) if packed.suffix == ".gz" else text)
     else:
         sys.exit(__doc__)
 

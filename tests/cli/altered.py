@@ -6,24 +6,21 @@ Each alteration is tried twice: as it is, which the digest tells, and with the d
 follows from the rest of the run can tell, or the scene of its name, or nothing.
 """
 import json
-import pathlib
 import re
 import shutil
-import subprocess
-import sys
 
-program, source, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
+import trial
+from trial import demand, finish, folder, read, sealed, source, write
+
 SCENE = "nu2-e06"
 scenes = source / "data" / "scenes"
-faults = []
 
 
 def call(code, *words, says=""):
-    done = subprocess.run([str(program), *map(str, words)], capture_output=True, text=True, cwd=folder)
-    if done.returncode != code or says not in done.stderr:
-        faults.append(f"{words}: exit code {done.returncode} instead of {code}, \"{says}\" in: {done.stderr}{done.stdout}")
-    if code and not re.fullmatch(r"([^\n]+\n)+", done.stderr):
-        faults.append(f"{words}: not one line for each problem: {done.stderr}")
+    said = trial.call(*words, code=code)
+    if code:
+        demand(says in said, f"{words}: does not say \"{says}\": {said}")
+        demand(re.fullmatch(r"([^\n]+\n)+", said), f"{words}: not one line for each problem: {said}")
 
 
 def number(text, column, row, by):
@@ -71,15 +68,13 @@ ALTERATIONS = [
     ("version", lambda text: re.sub(r'"version": "[^"]*"', '"version": "9.9.9"', text), False),
 ]
 
-shutil.rmtree(folder, ignore_errors=True)
-folder.mkdir(parents=True)
 (folder / "runs").mkdir()
-run = folder / "runs" / f"{SCENE}.json"
+run = f"runs/{SCENE}.json"
 record = ["--record", "half_cycles,impacts,contacts"]
 
 
 def simulate(scene, *options):
-    call(0, "run", "--scene", scenes / f"{scene}.json", *record, *options, "-o", folder / "runs" / f"{scene}.json")
+    call(0, "run", "--scene", scenes / f"{scene}.json", *record, *options, "-o", f"runs/{scene}.json")
 
 
 simulate(SCENE)
@@ -87,55 +82,52 @@ simulate("nu1-e06")
 claims = json.loads((source / "data" / "claims.json").read_text())
 claim = next(claim for claim in claims["claims"] if claim["measure"].get("scenes") == [SCENE])
 other = {**claim, "id": "other", "measure": {**claim["measure"], "scenes": ["nu1-e06"]}}
-(folder / "claims.json").write_text(json.dumps({**claims, "claims": [claim]}))
+write("claims.json", {**claims, "claims": [claim]})
 check = ["check", "run", run, "--scenes", scenes]
 verify = ["verify", "--claims", "claims.json", "--runs", "runs", "--scenes", scenes, "--members", "1"]
 series = ["series", "--catalogue", source / "figures" / "catalogue.json", "--runs", "runs", "--scenes", scenes,
           "--figure", "15"]
-text = run.read_text()
+text = read(run)
 call(0, *check)
 call(0, *verify)
 call(0, *series)
 for what, alter, follows in ALTERATIONS:
     altered = alter(text)
     assert altered != text, what
-    run.write_text(altered)
+    write(run, altered)
     for command in (check, verify, series):
         call(3, *command, says=f"{SCENE}.json: /provenance/sha256: must be the digest of the content")
-    subprocess.run([sys.executable, source / "tests" / "seal.py", run], check=True)
+    write(run, sealed(altered))
     for command in (check, verify, series):
         call(3 if follows else 0, *command, says=f"{SCENE}.json: /" if follows else "")
 
 # A further run, of the scene with another wall.
-run.write_text(text)
+write(run, text)
 soft = f"{SCENE}.soft"
 entry = {"name": soft, "scene": SCENE, "set": {"wall_stiffness": 1000}, "record": ["half_cycles"]}
-(folder / "catalogue.json").write_text(json.dumps({
-    "schema": "impact-damper/catalogue/1", "scenes": [{"scene": SCENE, "record": ["half_cycles"]}], "runs": [entry], "figures": []}))
-(folder / "claims.json").write_text(json.dumps({**claims, "claims": [{**claim, "measure": {**claim["measure"], "scenes": [soft]}}]}))
+write("catalogue.json", {"schema": "impact-damper/catalogue/1", "scenes": [{"scene": SCENE, "record": ["half_cycles"]}],
+                         "runs": [entry], "figures": []})
+write("claims.json", {**claims, "claims": [{**claim, "measure": {**claim["measure"], "scenes": [soft]}}]})
 further = [*verify, "--catalogue", "catalogue.json"]
 call(5, *further, says=f"runs/{soft}.json: cannot be read: No such file or directory; made by: impact-damper run --scene ")
-shutil.copy(run, folder / "runs" / f"{soft}.json")
+shutil.copy(folder / run, folder / "runs" / f"{soft}.json")
 call(3, *further, says=f"{soft}.json: /scene/wall_stiffness: must be 1000 as in run {soft} of the catalogue, got 10000")
-call(0, "run", "--scene", scenes / f"{SCENE}.json", "--wall-stiffness", "1000", *record, "-o", folder / "runs" / f"{soft}.json")
+call(0, "run", "--scene", scenes / f"{SCENE}.json", "--wall-stiffness", "1000", *record, "-o", f"runs/{soft}.json")
 call(0, *further)
-(folder / "claims.json").write_text(json.dumps({**claims, "claims": [claim]}))
+write("claims.json", {**claims, "claims": [claim]})
 
 # A run of another scene, under this one's name.
-shutil.copy(folder / "runs" / "nu1-e06.json", run)
+shutil.copy(folder / "runs/nu1-e06.json", folder / run)
 for command in (check, verify, series):
     call(3, *command, says=f"{SCENE}.json: /scene/mass_ratio: must be 0.02 as in {scenes}/{SCENE}.json, got 0.01: "
                            "a run of another scene")
 
 # One run of another engine, or of another wall, among the others: each is right by itself.
-(folder / "claims.json").write_text(json.dumps({**claims, "claims": [claim, other]}))
+write("claims.json", {**claims, "claims": [claim, other]})
 for options in (["--engine", "cem"], ["--calibration", "two-body"], ["--max-impacts", "100000"]):
     simulate(SCENE, *options)
     call(0, *check)
     call(3, *verify, says="/engine: must be that of runs/nu1-e06.json, exact, with its options, got ")
     call(3, *series[:-1], "8", says="runs of several engines are not put together")
 
-print(f"{len(ALTERATIONS)} alterations, {len(faults)} faults")
-for fault in faults[:20]:
-    print(fault)
-sys.exit(bool(faults))
+finish()

@@ -5,37 +5,22 @@
 Records are made by tests/measured/make_record.py, which shares no code with the program.
 """
 import json
-import pathlib
 import re
-import shutil
 import signal
 import subprocess
 import sys
 import time
 
-try:
-    from jsonschema import Draft7Validator, RefResolver
-except ImportError:
-    print("skipped: Python's jsonschema is not here (Debian: python3-jsonschema)")
-    sys.exit(77)
+from trial import demand, finish, faults, folder, program, read_json, source, validator, write
 
-program, source, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
-shutil.rmtree(folder, ignore_errors=True)
-folder.mkdir(parents=True)
 scene = source / "data/examples/mast.json"
 example = source / "data/examples/mast_measured.csv"
 TRUTH = {"restitution": 0.52, "damping_ratio": 0.003, "clearance": 11.5}
-faults = []
-
-
-def demand(holds, what):
-    if not holds:
-        faults.append(what)
 
 
 def record(name, *words):
     made = subprocess.run([sys.executable, str(source / "tests/measured/make_record.py"), *words], capture_output=True, text=True, check=True)
-    (folder / name).write_text(made.stdout, encoding="utf-8")
+    write(name, made.stdout)
     return name
 
 
@@ -43,7 +28,7 @@ def compare(name, *words, scene=scene):
     done = subprocess.run([str(program), "compare", "--measured", str(name), "--scene", str(scene), "-o", "out.json", *words],
                           cwd=folder, capture_output=True, text=True)
     demand(done.returncode == 0, f"{name} {words}: exit code {done.returncode}: {done.stderr}")
-    return done.stdout, json.loads((folder / "out.json").read_text(encoding="utf-8"))
+    return done.stdout, read_json("out.json")
 
 
 # The example is what its script makes.
@@ -55,11 +40,8 @@ text, found = compare(example, "--engine", "restitution", "--threads", "1")
 first = (folder / "out.json").read_bytes()
 compare(example, "--engine", "restitution", "--threads", "3")
 demand((folder / "out.json").read_bytes() == first, "other bytes with another number of threads")
-path = source / "data/schema/comparison.schema.json"
-schema = json.loads(path.read_text(encoding="utf-8"))
-Draft7Validator.check_schema(schema)
-check = Draft7Validator(schema, resolver=RefResolver(path.as_uri(), schema))
-for error in check.iter_errors(found):
+schema = validator("comparison")
+for error in schema.iter_errors(found):
     faults.append(f"schema: {list(error.absolute_path)}: {error.message[:200]}")
 done = subprocess.run([str(program), "check", "comparison", str(folder / "out.json")], capture_output=True, text=True)
 demand(done.returncode == 0, f"check: {done.stderr}")
@@ -89,7 +71,7 @@ for one, other in zip(found["bins"], slower["bins"]):
     demand(abs(one["eta"] / other["eta"] - 1) < one["relative_error"], "a wrong sampling rate changes the loss factor")
 
 # With the damping known clearance and restitution are told far better: the page's advice, and its numbers.
-(folder / "known.json").write_text(json.dumps(json.loads(scene.read_text(encoding="utf-8")) | {"damping_ratio": TRUTH["damping_ratio"]}))
+write("known.json", json.loads(scene.read_text(encoding="utf-8")) | {"damping_ratio": TRUTH["damping_ratio"]})
 text, known = compare(example, "--engine", "restitution", "--fit", "restitution,clearance", scene="known.json")
 interval = re.search(r"^clearance .* (\S+ to \S+ mm)  ", text, re.M)[1]
 demand(interval in (source / "docs/compare.md").read_text(encoding="utf-8"), f"docs/compare.md has another clearance than {interval}")
@@ -103,13 +85,13 @@ demand("hardly be distinguished" in text or "does not tell" in text, text)
 # An acceleration with the same amplitudes and frequency: two derivatives make -omega^2 of it.
 rows = [line.split(",") for line in example.read_text(encoding="utf-8").split()[1:]]
 omega = 2 * 3.14159265 * found["reduction"]["frequency"]
-(folder / "acceleration.csv").write_text("t_s,a_m_per_s2\n" + "".join(f"{t},{-float(x) * omega ** 2 / 1000:.6g}\n" for t, x in rows), encoding="utf-8")
+write("acceleration.csv", "t_s,a_m_per_s2\n" + "".join(f"{t},{-float(x) * omega ** 2 / 1000:.6g}\n" for t, x in rows))
 text, of_acceleration = compare("acceleration.csv", "--fit", "none")
 demand("they may err by 4 %" in text, text)
 # The frequency that made it is the mean one; above 8 mm the local one is within a percent of it.
 for one, other in zip(found["half_cycles"]["amplitude"][:80], of_acceleration["half_cycles"]["amplitude"]):
     demand(abs(one / other - 1) < 0.02, f"{one} mm, {other} of the acceleration")
-demand("fit" not in of_acceleration and not list(check.iter_errors(of_acceleration)), "nothing was to be fitted")
+demand("fit" not in of_acceleration and not list(schema.iter_errors(of_acceleration)), "nothing was to be fitted")
 
 # Interrupted, it leaves nothing behind.
 (folder / "out.json").unlink()
@@ -121,5 +103,4 @@ out, err = running.communicate()
 demand(running.returncode == 130 and out == "" and "interrupted: " in err, f"interrupted: {running.returncode} {err}")
 demand(not (folder / "out.json").exists(), "interrupted, a file is left")
 
-print("\n".join(faults + [f"{len(faults)} faults"]))
-sys.exit(1 if faults else 0)
+finish()

@@ -1,6 +1,6 @@
 """Each figure's table as CSV, read by Python's csv module, holds the numbers of the table that gnuplot reads.
 
-    csv_tables.py PROGRAM SOURCE RUNS FOLDER        RUNS has the catalogue's runs; FOLDER, made anew, is for tables
+    csv_tables.py CATALOGUE TABLES        TABLES has those of the catalogue, as the build makes them in both forms
 
 Both are read by their own rules: of the one the header, block names, quoted headings and blank lines, of the other
 rows of six cells. Numbers are compared as texts: both have every digit.
@@ -9,22 +9,16 @@ import csv
 import json
 import pathlib
 import re
-import shutil
-import subprocess
 import sys
 
-program, source, runs, folder = (pathlib.Path(word).resolve() for word in sys.argv[1:5])
+catalogue, tables = (pathlib.Path(word) for word in sys.argv[1:3])
+faults = []
 # Columns that are ends of an interval at x, by block and number; all others are curves.
 ENDS = {("band", 2): "low", ("band", 3): "high", ("spread", 2): "low", ("spread", 3): "high"}
 ENDS_OF_PHASES = {("stuck", 2): "low", ("stuck", 3): "high"}
 ENDS_OF_CHARTS = {("curve", 3): "low", ("curve", 4): "high"}
 ENDS_OF_SETS = {("set", 3): "low", ("set", 4): "high"}
 GAP = ("", "", "", "")
-faults = []
-
-
-def run(*words):
-    subprocess.run([str(program), *map(str, words)], check=True, cwd=folder)
 
 
 def gnuplot_blocks(text):
@@ -53,35 +47,28 @@ def wanted_rows(kind, name, headings, rows):
                    row[low[0] - 1] if low and beside else "", row[high[0] - 1] if high and beside else "")
 
 
-shutil.rmtree(folder, ignore_errors=True)
-(folder / "tables").mkdir(parents=True)
-catalogue = json.loads((source / "figures/catalogue.json").read_text(encoding="utf-8"))
-series = ["series", "--catalogue", source / "figures/catalogue.json", "--scenes", source / "data/scenes", "--runs", runs,
-          "-o", "tables"]
-run(*series)
-run(*series, "--format", "csv")
+def demand(holds, what):
+    if not holds:
+        faults.append(what)
+
 
 seen = set()
-for figure in catalogue["figures"]:
+for figure in json.loads(catalogue.read_text(encoding="utf-8"))["figures"]:
     if figure["table"] == "drawing":
         continue
     stem = pathlib.Path(figure["script"]).stem
-    text = (folder / f"tables/{stem}.dat").read_text(encoding="utf-8")
+    text = (tables / f"{stem}.dat").read_text(encoding="utf-8")
     wanted = [row for block in gnuplot_blocks(text) for row in wanted_rows(figure["table"], *block)]
-    with open(folder / f"tables/{stem}.csv", newline="", encoding="utf-8") as file:
+    with open(tables / f"{stem}.csv", newline="", encoding="utf-8") as file:
         header, *given = map(tuple, csv.reader(file))
-    if header != ("block", "curve", "x", "y", "low", "high"):
-        faults.append(f"{stem}.csv: its header is {header}")
-    if given != wanted:
-        at = next((i for i, pair in enumerate(zip(given, wanted)) if pair[0] != pair[1]), min(len(given), len(wanted)))
-        faults.append(f"{stem}.csv: {len(given)} rows, {len(wanted)} in {stem}.dat; the first that differs is number {at + 1}: "
-                      f"{given[at:at + 1]} and {wanted[at:at + 1]}")
+    demand(header == ("block", "curve", "x", "y", "low", "high"), f"{stem}.csv: its header is {header}")
+    at = next((i for i, pair in enumerate(zip(given, wanted)) if pair[0] != pair[1]), min(len(given), len(wanted)))
+    demand(given == wanted, f"{stem}.csv: {len(given)} rows, {len(wanted)} in {stem}.dat; the first that differs is number {at + 1}: "
+                            f"{given[at:at + 1]} and {wanted[at:at + 1]}")
     for cells in given:
         seen.add("".join("-" if cell == "" else "n" for cell in cells[2:]))
         list(map(float, filter(None, cells[2:])))
 # Values, bands, a value with its band: each kind is there. Gaps depend on a chaotic decay; tests/series.cpp has one.
-if seen - {"----"} != {"nn--", "n-nn", "nnnn"}:
-    faults.append(f"kinds of rows: {sorted(seen)}")
-for fault in faults:
-    print(fault[:600], file=sys.stderr)
+demand(seen - {"----"} == {"nn--", "n-nn", "nnnn"}, f"kinds of rows: {sorted(seen)}")
+print("\n".join(fault[:600] for fault in faults))
 sys.exit(bool(faults))

@@ -5,34 +5,18 @@
 import csv
 import json
 import math
-import pathlib
-import shutil
 import statistics
-import subprocess
-import sys
 
-program, source, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
-shutil.rmtree(folder, ignore_errors=True)
-(folder / "runs").mkdir(parents=True)
-faults = []
+from trial import call, demand, finish, folder, read, source, write
 
-
-def demand(holds, what):
-    if not holds:
-        faults.append(what)
-
-
-def call(*words, code=0):
-    done = subprocess.run([str(program), *map(str, words)], cwd=folder, capture_output=True, text=True)
-    demand(done.returncode == code, f"{words}: exit code {done.returncode}: {done.stderr}")
-    return done.stdout if code == 0 else done.stderr
+(folder / "runs").mkdir()
 
 
 # The project's own plan, but for fewer releases and values.
 plan = json.loads((source / "figures/design_charts.json").read_text(encoding="utf-8"))
 plan["grid"] = [{"number": "restitution", "values": [0.4, 0.6]}, {"number": "mass_ratio", "values": [0.02, 0.1]}]
 plan["samples"]["count"] = 3
-(folder / "charts.json").write_text(json.dumps(plan), encoding="utf-8")
+write("charts.json", plan)
 (folder / "catalogue.json").write_text(json.dumps({"schema": "impact-damper/catalogue/1", "scenes": [], "figures": [
     {"figure": "H", "title": "Charts", "table": "design_charts", "plan": "charts.json", "script": "figH.gp"}]}), encoding="utf-8")
 series = ("series", "--catalogue", "catalogue.json", "--runs", "runs", "--scenes", ".", "--figure", "H", "--format", "csv")
@@ -61,9 +45,7 @@ reading = [row for row in table if row["block"] == "reading"]
 demand(reading and float(reading[0]["y"]) == found["curve-2-1", 1.0][0], "the example is another")
 
 plan["samples"]["seed"] = 2
-(folder / "charts.json").write_text(json.dumps(plan), encoding="utf-8")
+write("charts.json", plan)
 demand("figure H: runs/charts.csv: must be of the plan that is asked for" in call(*series, code=3), "the sweep of another plan is drawn")
 
-for fault in faults:
-    print(fault)
-sys.exit(1 if faults else 0)
+finish()

@@ -3,33 +3,10 @@
     designs.py PROGRAM SOURCE FOLDER        FOLDER, made anew, is for the files
 """
 import csv
-import hashlib
 import json
 import math
-import pathlib
-import shutil
-import subprocess
-import sys
 
-try:
-    from jsonschema import Draft7Validator, RefResolver
-except ImportError:
-    print("skipped: Python's jsonschema is not here (Debian: python3-jsonschema)")
-    sys.exit(77)
-
-program, source, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
-faults = []
-
-
-def demand(holds, what):
-    if not holds:
-        faults.append(what)
-
-
-def call(*words, code=0):
-    done = subprocess.run([str(program), *map(str, words)], cwd=folder, capture_output=True, text=True)
-    demand(code is None or done.returncode == code, f"{words}: exit code {done.returncode}: {done.stderr}")
-    return done.stdout
+from trial import call, demand, finish, has_its_digest, read, read_json, source, validator, write
 
 
 def close(a, b, digits=12):
@@ -38,7 +15,7 @@ def close(a, b, digits=12):
 
 def first_peak_below(scene, amplitude):
     """In seconds, by `run` with the motion itself: the largest |x| between two zero crossings of it, from samples of one half cycle."""
-    (folder / "scene.json").write_text(json.dumps(scene))
+    write("scene.json", scene)
     run = json.loads(call("run", "--scene", "scene.json"))
     length, second = run["units"]["length_m"] * 1e3, run["units"]["time_s"]
     half = run["half_cycles"]
@@ -48,35 +25,29 @@ def first_peak_below(scene, amplitude):
     return max(zip(map(abs, motion["x"]), motion["time"]))[1] * second
 
 
-shutil.rmtree(folder, ignore_errors=True)
-folder.mkdir(parents=True)
 mast = json.loads((source / "data/examples/mast.json").read_text())
-(folder / "mast.json").write_text(json.dumps(mast))
+write("mast.json", mast)
 words = ("design", "--scene", "mast.json", "--to", 20, "--within", 5, "--share", 0.8, "--neighbours", 1000, "--secondary-mass", "1:8",
          "--clearance", "20:50")
 printed = call(*words, "--threads", 1, "-o", "1.json", "--write-plan", "plan.json")
-text = (folder / "1.json").read_text()
+text = read("1.json")
 for threads in (2, 5):
     demand(call(*words, "--threads", threads, "-o", "n.json") == printed, f"{threads} threads: another table")
-    demand((folder / "n.json").read_text() == text, f"{threads} threads: another file")
+    demand(read("n.json") == text, f"{threads} threads: another file")
 answer = json.loads(text)
 
-path = source / "data/schema/design.schema.json"
-schema = json.loads(path.read_text(encoding="utf-8"))
-Draft7Validator.check_schema(schema)
-validator = Draft7Validator(schema, resolver=RefResolver(path.as_uri(), schema))
-demand(not list(validator.iter_errors(answer)), f"not as the schema says: {[error.message for error in validator.iter_errors(answer)]}")
-head, _, seal = text.rpartition(', "sha256": "')
-demand(hashlib.sha256(head.encode()).hexdigest() == seal[:64], "the file's own digest")
+schema = validator("design")
+demand(not list(schema.iter_errors(answer)), f"not as the schema says: {[error.message for error in schema.iter_errors(answer)]}")
+demand(has_its_digest(text), "the file's own digest")
 demand("1.json: valid" in call("check", "design", "1.json"), "check does not allow a file as it was written")
-(folder / "altered.json").write_text(text.replace('"met": true', '"met": false'))
+write("altered.json", text.replace('"met": true', '"met": false'))
 call("check", "design", "altered.json", code=3)
 call("check", "comparison", "1.json", code=3)
 
 # The plan of the check, made by `sweep`, has the numbers of the first design.
 best = answer["designs"][0]
 call("sweep", "plan.json", "-o", "check.csv")
-rows = list(csv.DictReader((folder / "check.csv").read_text().splitlines()))
+rows = list(csv.DictReader(read("check.csv").splitlines()))
 times = sorted(float(row["time_to_amplitude_20"]) for row in rows)
 demand(answer["met"] and len(times) == 1000, f"met: {answer['met']}, {len(times)} times")
 demand(best["in_time"] == sum(t <= 5 for t in times), f"in time: {best['in_time']}")
@@ -97,7 +68,7 @@ for row in rows[::250]:
 
 # Other draws give another check and nearly the same design, confirmed or not.
 call(*words, "--seed", 5, "-o", "other.json", code=None)
-other = json.loads((folder / "other.json").read_text())["designs"][0]
+other = read_json("other.json")["designs"][0]
 demand(other["slowest"] != best["slowest"], "another seed has the same neighbours")
 demand(abs(math.log(other["secondary_mass"] / best["secondary_mass"])) < 0.1, f"another seed: {other['secondary_mass']} kg")
 
@@ -105,8 +76,8 @@ demand(abs(math.log(other["secondary_mass"] / best["secondary_mass"])) < 0.1, f"
 same = ("design", "--mass-ratio", 0.04, "--damping-ratio", 0.002, "--x0", 6, "--to", 2, "--within", 100, "--share", 0.8, "--neighbours", 1000,
         "--secondary-mass", f"{best['secondary_mass'] / 40}:0.2", "--clearance", f"2:{best['clearance'] / 10}", "-o", "scaled.json")
 call(*same)
-scaled = json.loads((folder / "scaled.json").read_text())
-demand(not list(validator.iter_errors(scaled)), "dimensionless: not as the schema says")
+scaled = read_json("scaled.json")
+demand(not list(schema.iter_errors(scaled)), "dimensionless: not as the schema says")
 first = scaled["designs"][0]
 demand(scaled["units"]["time"] == "1/Omega_n" and close(first["secondary_mass"] * 40, best["secondary_mass"]) and
        close(first["clearance"] * 10, best["clearance"]), f"dimensionless: {first}")
@@ -119,9 +90,8 @@ demand("100 neighbours are too few to tell" in few and "give at least --neighbou
 
 # Not in time: said so, with the heaviest mass.
 said = call(*words[:6], 1.5, *words[7:], "-o", "none.json", code=1)
-none = json.loads((folder / "none.json").read_text())
+none = read_json("none.json")
 demand("No design was found." in said and "A heavier secondary mass" in said, f"none: {said}")
-demand(not none["met"] and [each["secondary_mass"] for each in none["designs"]] == [8] and not list(validator.iter_errors(none)), f"none: {none}")
+demand(not none["met"] and [each["secondary_mass"] for each in none["designs"]] == [8] and not list(schema.iter_errors(none)), f"none: {none}")
 
-print("\n".join(faults + [f"{len(faults)} faults"]))
-sys.exit(1 if faults else 0)
+finish()

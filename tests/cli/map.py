@@ -7,29 +7,11 @@ import hashlib
 import json
 import math
 import os
-import pathlib
 import re
 import shutil
 import statistics
-import subprocess
-import sys
 
-program, source, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
-shutil.rmtree(folder, ignore_errors=True)
-folder.mkdir(parents=True)
-faults = []
-
-
-def demand(holds, what):
-    if not holds:
-        faults.append(what)
-
-
-def call(*words, code=0, **more):
-    done = subprocess.run([str(program), *map(str, words)], cwd=folder, capture_output=True, text=True, **more)
-    demand(done.returncode == code, f"{words}: exit code {done.returncode}: {done.stderr}")
-    return done.stdout if code == 0 else done.stderr
-
+from trial import call, demand, finish, faults, folder, program, read, sealed, source, write
 
 # The palette, and what of it reads in grey: CIE lightness rises by equal steps.
 script = (source / "figures/map.gp").read_text(encoding="utf-8")
@@ -141,13 +123,13 @@ plan = {"schema": "impact-damper/plan/1", "scene": {"until_amplitude": 0.3, "unt
                  {"number": "x0", "values": [2, 5]}],
         "samples": {"count": 5, "seed": 3, "numbers": [{"number": "damping_ratio", "half_width": 0.0005}]},
         "quantities": ["time_to_amplitude=0.5", "lowest_amplitude_above_loss=0.09", "amplitude_of_largest_loss_factor", "impacts"]}
-(folder / "plan.json").write_text(json.dumps(plan), encoding="utf-8")
+write("plan.json", plan)
 call("sweep", "plan.json", "-o", "map.csv")
 
 
 def drawn(table, x, y, z, *more):
     said = call("map", table, "--x", x, "--y", y, "--z", z, *more, "-o", "map.svg")
-    return said, (folder / "map.svg").read_text(encoding="utf-8")
+    return said, read("map.svg")
 
 
 def compare(table, x, y, z, where, statistic, best, *more):
@@ -171,7 +153,7 @@ cells = cells_of("map.csv", x, y, z, where, "median", "least")
 square = {"schema": "impact-damper/plan/1", "scene": {"until_amplitude": 0.3, "until_time": 4000},
           "grid": [{"number": "restitution", "values": [0.3, 0.5, 0.7]}, {"number": "mass_ratio", "values": [0.03, 0.06, 0.12]}],
           "quantities": ["time_to_amplitude=0.5"]}
-(folder / "square.json").write_text(json.dumps(square), encoding="utf-8")
+write("square.json", square)
 call("sweep", "square.json", "-o", "square.csv")
 upright = cells_of("square.csv", x, y, z, {}, "median", "least")
 demand(not differences(*drawn("square.csv", x, y, z), upright, x, y, z, "least"), "the square map differs")
@@ -183,15 +165,14 @@ demand(any("colour" in each for each in differences(*drawn("square.csv", x, y, z
 
 def resealed(table, text):
     """The table with another text, and beside it what describes it, as if the program had written both."""
-    description = (folder / "map.csv.json").read_text(encoding="utf-8")
+    description = read("map.csv.json")
     digest = hashlib.sha256(text.encode()).hexdigest()
     description = re.sub(r'("bytes": )\d+(, "sha256": ")\w*', lambda m: m[1] + str(len(text.encode())) + m[2] + digest, description, count=1)
-    (folder / table).write_text(text, encoding="utf-8", newline="")
-    (folder / f"{table}.json").write_text(description, encoding="utf-8")
-    subprocess.run([sys.executable, source / "tests/seal.py", folder / f"{table}.json"], check=True)
+    write(table, text)
+    write(f"{table}.json", sealed(description))
 
 
-lines = (folder / "map.csv").read_text(encoding="utf-8").splitlines()
+lines = read("map.csv").splitlines()
 rows = [line.split(",") for line in lines[1:]]
 column = lines[0].split(",").index(z)
 shifted = [row[:column] + [other[column]] + row[column + 1:] for row, other in zip(rows, rows[-10:] + rows[:-10])]
@@ -203,7 +184,7 @@ failed = [row[:column] + [""] * (len(row) - column - 2) + ["failed", '"so, it ""
 resealed("failed.csv", "\n".join([lines[0], *map(",".join, failed)]) + "\n")
 faults += compare("failed.csv", x, y, z, where, "median", "least")
 demand("failed" in cells_of("failed.csv", x, y, z, where, "median", "least").values(), "no cell has failed")
-demand("run failed" in (folder / "map.svg").read_text(encoding="utf-8"), "no mark of a failed run")
+demand("run failed" in read("map.svg"), "no mark of a failed run")
 
 # What is not valid.
 def rejected(text, *words, code=2, **more):
@@ -237,25 +218,25 @@ rejected('--output: must end in .svg for SVG, got "none.png"', *usual[:-1], "non
 rejected("TABLE: must be given", "-o", "none.svg")
 rejected("plan.json.json: cannot be read", "plan.json", *usual[1:], code=5)
 altered = "\n".join(lines).replace(rows[3][column], rows[4][column]) + "\n"
-(folder / "altered.csv").write_text(altered, encoding="utf-8", newline="")
+write("altered.csv", altered)
 shutil.copy(folder / "map.csv.json", folder / "altered.csv.json")
 rejected("altered.csv: is not the table that altered.csv.json describes: its length or SHA-256 is another", "altered.csv", *usual[1:], code=3)
 demand("altered.csv: is not the table" in call("check", "sweep", "altered.csv", code=3), "check says nothing of a table that was altered")
 demand("map.csv: valid" in call("check", "sweep", "map.csv"), "check does not allow a table as it was written")
-other = (folder / "map.csv.json").read_text(encoding="utf-8")
-(folder / "altered.csv").write_text("\n".join(lines) + "\n", encoding="utf-8", newline="")
-(folder / "altered.csv.json").write_text(other.replace('"seed": 3', '"seed": 4'), encoding="utf-8")
+other = read("map.csv.json")
+write("altered.csv", "\n".join(lines) + "\n")
+write("altered.csv.json", other.replace('"seed": 3', '"seed": 4'))
 rejected("altered.csv.json", "altered.csv", *usual[1:], code=3)
 one = dict(square, grid=[{"number": "restitution", "values": [0.5]}, {"number": "mass_ratio", "values": [0.02, 0.04]},
                          {"number": "w0", "values": [0, 0.001]}], quantities=["time_to_amplitude=5", "loss_factor_at=90", "time_to_amplitude=7"])
-(folder / "one.json").write_text(json.dumps(one), encoding="utf-8")
+write("one.json", one)
 call("sweep", "one.json", "-o", "one.csv")
 rejected("--x: must have at least two values, restitution has one: 0.5", "one.csv", "--x", x, "--y", y, "--z", "time_to_amplitude=5", "-o", "none.svg")
 rejected("one.csv: has no point with a value of loss_factor_at_90", "one.csv", "--x", y, "--y", "w0", "--z", "loss_factor_at=90", "-o", "none.svg", code=3)
 rejected("one.csv: has only one value of time_to_amplitude_7, 0", "one.csv", "--x", y, "--y", "w0", "--z", "time_to_amplitude=7", "-o", "none.svg", code=3)
 # A value of the grid as one writes it: the second of four between 0 and 0.3 is 0.09999999999999999.
 steps = dict(square, grid=square["grid"] + [{"number": "y0", "from": 0, "to": 0.3, "count": 4}])
-(folder / "steps.json").write_text(json.dumps(steps), encoding="utf-8")
+write("steps.json", steps)
 call("sweep", "steps.json", "-o", "steps.csv")
 written, meant = (drawn("steps.csv", x, y, z, "--where", f"y0={value}") for value in ("0.1", "0.09999999999999999"))
 demand(written == meant, "0.1 and 0.09999999999999999 are not one value of the grid")
@@ -281,10 +262,10 @@ def points_of(svg, axes):
 limits = {"schema": "impact-damper/plan/1", "scene": {"until_amplitude": 0.01, "until_time": 400},
           "grid": [{"number": "restitution", "from": 0.05, "to": 0.85, "count": 9},
                    {"number": "x0", "from": 0.05, "to": 20, "count": 9, "scale": "logarithmic"}], "quantities": ["impacts", "time_to_amplitude=0.2"]}
-(folder / "limits.json").write_text(json.dumps(limits), encoding="utf-8")
+write("limits.json", limits)
 call("sweep", "limits.json", "-o", "limits.csv")
 call("map", "limits.csv", "--x", "restitution", "--y", "x0", "--z", "impacts", "-o", "limits.svg")
-svg = (folder / "limits.svg").read_text(encoding="utf-8")
+svg = read("limits.svg")
 axes = json.loads(re.search(r"<metadata>(.*)</metadata>", svg)[1])["axes"][0]
 lines = points_of(svg, axes)
 demand(len(lines) == 2, f"{len(lines)} lines of regimes")
@@ -302,11 +283,9 @@ for e, known in ((0.4, 2.05), (0.6, 5.23)):
     demand(abs(near[0] - e) < 0.01 and abs(near[1] / known - 1) < 0.05, f"bounce-down ends at {near}, for {e} at {known}")
 demand("impacts fail below it" in svg and "no bounce-down below it" in svg, "the sides of the lines are not told")
 call("map", "limits.csv", "--x", "x0", "--y", "restitution", "--z", "time_to_amplitude_0.2", "-o", "limits.svg")
-svg = (folder / "limits.svg").read_text(encoding="utf-8")
+svg = read("limits.svg")
 axes = json.loads(re.search(r"<metadata>(.*)</metadata>", svg)[1])["axes"][0]
 lines = points_of(svg, axes)
 demand(len(lines) == 1 and all(abs(fold(e) / 0.2 - 1) < 0.01 for _, e in lines[0]), f"asked at 0.2 impacts fail at {lines}")
 
-for fault in faults:
-    print(fault)
-sys.exit(1 if faults else 0)
+finish()

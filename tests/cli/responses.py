@@ -3,52 +3,31 @@
     responses.py PROGRAM SOURCE FOLDER        FOLDER, made anew, is for the files
 """
 import csv
-import hashlib
 import json
 import math
-import pathlib
-import shutil
 import signal
 import subprocess
-import sys
 
-try:
-    from jsonschema import Draft7Validator, RefResolver
-except ImportError:
-    print("skipped: Python's jsonschema is not here (Debian: python3-jsonschema)")
-    sys.exit(77)
+from trial import demand, finish, faults, folder, has_its_digest, program, read, read_json, source, validator, write
 
-program, source, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
-path = source / "data/schema/response.schema.json"
-schema = json.loads(path.read_text(encoding="utf-8"))
-Draft7Validator.check_schema(schema)
-validator = Draft7Validator(schema, resolver=RefResolver(path.as_uri(), schema))
-faults = []
-
-
-def demand(holds, what):
-    if not holds:
-        faults.append(what)
+schema = validator("response")
 
 
 def respond(file, *words):
     done = subprocess.run([str(program), "response", *map(str, words), "-o", file], cwd=folder, capture_output=True, text=True)
     demand(done.returncode == 0, f"{words}: exit code {done.returncode}: {done.stderr}")
-    return (folder / file).read_text(encoding="utf-8")
+    return read(file)
 
 
 def examined(text, what):
     """The document, which must obey the schema and end with the digest of what is before."""
     document = json.loads(text)
-    for error in validator.iter_errors(document):
+    for error in schema.iter_errors(document):
         faults.append(f"{what}: {list(error.absolute_path)}: {error.message[:200]}")
-    body, _, seal = text.rpartition(', "sha256": "')
-    demand(hashlib.sha256(body.encode()).hexdigest() == seal.split('"')[0], f"{what}: the digest is another")
+    demand(has_its_digest(text), f"{what}: the digest is another")
     return document
 
 
-shutil.rmtree(folder, ignore_errors=True)
-folder.mkdir(parents=True)
 short = ["--max-periods", 300]
 forced = ["--mass-ratio", 0.1, "--damping-ratio", 0.01, "--force-amplitude", 0.05, "--x0", 1]
 sweeps = {
@@ -95,7 +74,7 @@ for name, words in sweeps.items():
 # Impacts on either wall, counted in a run from the state that is told on.
 checked = 0
 for name in ("exact", "restitution"):
-    document = json.loads((folder / f"{name}.json").read_text())
+    document = read_json(f"{name}.json")
     for way in (each[way] for each in document["sweeps"] for way in ("up", "down")):
         for i, end in enumerate(way["end"]):
             if end != "periodic" or way["impacts_left"][i] + way["impacts_right"][i] == 0:
@@ -103,23 +82,23 @@ for name in ("exact", "restitution"):
             scene = {**document["scene"], document["axis"]["number"]: document["values"][i]}
             scene.update(x0=way["x"][i], v0=way["v"][i], y0=way["y"][i], w0=way["w"][i],
                          until_time=2 * math.pi / scene["force_frequency"] * way["period"][i])
-            (folder / "scene.json").write_text(json.dumps(scene))
+            write("scene.json", scene)
             subprocess.run([str(program), "run", "--scene", "scene.json", "--engine", name, "--record", "impacts", "-o",
                             "run.json"], cwd=folder, check=True)
-            walls = json.loads((folder / "run.json").read_text())["impacts"]["wall"]
+            walls = read_json("run.json")["impacts"]["wall"]
             demand([walls.count(0), walls.count(1)] == [way["impacts_left"][i], way["impacts_right"][i]],
                    f"{name}: impacts at {document['values'][i]} are not {walls}")
             checked += way["impacts_left"][i] != way["impacts_right"][i]
 demand(checked > 0, "no motion strikes one wall more often than the other")
 
-budget = json.loads((folder / "budget.json").read_text())
+budget = read_json("budget.json")
 demand("impact_budget" in budget["sweeps"][0]["up"]["end"] and None in budget["sweeps"][0]["up"]["amplitude"], "budget: none")
 
 # In SI: the same rows in other units.
-units = json.loads((folder / "units.json").read_text())
+units = read_json("units.json")
 length, time, force = (units["units"][key] for key in ("length_m", "time_s", "force_N"))
 demand([round(v / time / 2 / math.pi, 9) for v in units["values"]] == [3.05, 3.15, 3.25], f"units: {units['values']}")
-plain = list(csv.DictReader((folder / "units.csv").read_text().splitlines()))
+plain = list(csv.DictReader(read("units.csv").splitlines()))
 text = respond("si.csv", "sweep", *sweeps["units"], "--format", "csv", "--si")
 SI = {"force_frequency_Hz": ("force_frequency", 1 / (2 * math.pi * time)), "amplitude_m": ("amplitude", length),
       "v_m_per_s": ("v", length / time), "power_W": ("power", units["units"]["energy_J"] / time), "lag_deg": ("lag_deg", 1)}
@@ -148,7 +127,7 @@ for name, words in basins.items():
         demand(all(math.isclose(float(a), b, rel_tol=1e-12, abs_tol=1e-12) for a, b in zip(row, place)), f"{name}.csv: {row}")
         demand(row[2] == str(attractor[n]), f"{name}.csv: {row}")
     demand(len(rows) == len(attractor), f"{name}.csv: {len(rows)} rows")
-starts = json.loads((folder / "starts.json").read_text())
+starts = read_json("starts.json")
 demand([axis["from"] for axis in starts["axes"]] == [-2, 1 / 160], f"starts: {starts['axes']}")
 
 # Branches of orbits: the table holds their points and, in their places, the events.
@@ -309,8 +288,8 @@ boxes = ["--scene", "boxes.json", "--engine", "restitution", "--force-frequency"
 document = examined(respond("several.json", "lyapunov", *boxes, "--periods", 10, "--discard", 0), "exponents of several dampers")
 demand(len(document["exponents"]) == 6, f"exponents of several dampers: {document['exponents']}")
 duration = 10 * 2 * math.pi / 0.95
-scene = {**json.loads((folder / "boxes.json").read_text()), "force_frequency": 0.95, "until_time": duration}
-(folder / "ten_periods.json").write_text(json.dumps(scene))
+scene = {**read_json("boxes.json"), "force_frequency": 0.95, "until_time": duration}
+write("ten_periods.json", scene)
 done = subprocess.run([str(program), "run", "--scene", "ten_periods.json", "--engine", "restitution", "--record", "impacts"],
                       cwd=folder, capture_output=True, text=True)
 impacts = len(json.loads(done.stdout)["impacts"]["time"])
@@ -324,7 +303,7 @@ demand((ended["stop_reason"], ended["exponents"], ended["standard_errors"]) == (
 mast = ["--scene", source / "data/examples/mast_in_wind.json"]
 units = found["mast"]["units"]
 length, time = units["length_m"], units["time_s"]
-plain = list(csv.DictReader((folder / "mast.csv").read_text().splitlines()))
+plain = list(csv.DictReader(read("mast.csv").splitlines()))
 text = respond("mast_si.csv", "orbits", *branches["mast"], "--format", "csv", "--si")
 SI = {"force_frequency_Hz": ("force_frequency", 1 / (2 * math.pi * time)), "amplitude_m": ("amplitude", length),
       "slowest_impact_m_per_s": ("slowest_impact", length / time), "nearest_miss_m": ("nearest_miss", length),
@@ -341,7 +320,6 @@ for row, own in zip(in_si, plain):
         demand(math.isclose(float(row[f"{column}_per_s"]), float(own[column]) / time, rel_tol=1e-12), f"rates_si.csv: {row}")
 
 
-
 # All of them are valid to `check`, whose complaint about an altered one names it and the place.
 def check(*words):
     return subprocess.run([str(program), "check", "response", *words], cwd=folder, capture_output=True, text=True)
@@ -351,14 +329,14 @@ files = sorted(file.name for file in folder.glob("*.json") if '"impact-damper/re
 demand(len(files) > 15, f"check: only {files}")
 done = check(*files)
 demand((done.returncode, done.stderr) == (0, "") and done.stdout == "".join(f"{name}: valid\n" for name in files), f"check: {done}")
-text = (folder / "exact.json").read_text()
+text = read("exact.json")
 altered = text.replace('"mass_ratio": 0.1', '"mass_ratio": 0.11', 1)
-(folder / "altered.json").write_text(altered)
+write("altered.json", altered)
 done = check("altered.json")
 demand(done.returncode == 3 and "altered.json: /locked_amplitude/0: must be " in done.stderr, f"check: {done}")
 altered = text.replace('"end": ["periodic"', '"end": ["step_budget"', 1) if '"end": ["periodic"' in text else \
     text.replace('"end": ["not_periodic"', '"end": ["step_budget"', 1)
-(folder / "altered.json").write_text(altered)
+write("altered.json", altered)
 done = check("altered.json")
 demand(done.returncode == 3 and "must be null, got " in done.stderr, f"check: {done}")
 
@@ -410,5 +388,4 @@ demand(process.returncode == 130, f"interrupted: exit code {process.returncode}"
 demand(said == "impact-damper: interrupted: long.json is not written", f"interrupted: {said}")
 demand(not list(folder.glob("*long*")), "interrupted: a file is left")
 
-print("\n".join(faults + [f"{len(faults)} faults"]))
-sys.exit(1 if faults else 0)
+finish()

@@ -7,18 +7,17 @@ import shutil
 import subprocess
 import sys
 
+from trial import demand, finish, folder, program, source
+
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from packed_files import unpack  # noqa: E402
 
-program, source, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
 unpack(source / "tests/cli/files.packed", folder)
-faults = []
 
 
 def call(*words):
     done = subprocess.run([str(program), *map(str, words)], cwd=folder, capture_output=True, text=True)
-    if done.returncode not in (0, 1):  # 1: a check failed, and all is written
-        faults.append(f"{words}: exit code {done.returncode}: {done.stderr}")
+    demand(done.returncode in (0, 1), f"{words}: exit code {done.returncode}: {done.stderr}")  # 1: a check failed, and all is written
     return done.stdout
 
 
@@ -45,9 +44,6 @@ for words, option, file in commands:
     made = (folder / file).read_text(encoding="utf-8") if (folder / file).exists() else None
     there = sorted(folder.rglob("*"))
     printed = call(*words, option, "-")
-    if printed != made:
-        faults.append(f"{words} {option} -: {printed[:300]!r}, not {made and made[:300]!r}")
-    if sorted(folder.rglob("*")) != there:
-        faults.append(f"{words} {option} -: files {set(folder.rglob('*')) - set(there)}")
-print("\n".join(faults))
-sys.exit(1 if faults else 0)
+    demand(printed == made, f"{words} {option} -: {printed[:300]!r}, not {made and made[:300]!r}")
+    demand(sorted(folder.rglob("*")) == there, f"{words} {option} -: files {set(folder.rglob('*')) - set(there)}")
+finish()

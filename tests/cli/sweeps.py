@@ -6,61 +6,28 @@ import csv
 import hashlib
 import json
 import math
-import pathlib
 import re
 import shutil
 import signal
 import subprocess
-import sys
 import time
 
-try:
-    from jsonschema import Draft7Validator, RefResolver
-except ImportError:
-    print("skipped: Python's jsonschema is not here (Debian: python3-jsonschema)")
-    sys.exit(77)
-
-program, source, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
-faults = []
-
-
-def demand(holds, what):
-    if not holds:
-        faults.append(what)
-
-
-def validator(kind):
-    path = source / f"data/schema/{kind}.schema.json"
-    schema = json.loads(path.read_text(encoding="utf-8"))
-    Draft7Validator.check_schema(schema)
-    return Draft7Validator(schema, resolver=RefResolver(path.as_uri(), schema))
-
-
-def call(*words, code=0):
-    done = subprocess.run([str(program), *map(str, words)], cwd=folder, capture_output=True, text=True)
-    demand(code is None or done.returncode == code, f"{words}: exit code {done.returncode}: {done.stderr}")
-    return done.stdout if code == 0 else done.stderr
+from trial import call, demand, finish, folder, has_its_digest, program, read, read_json, source, validator, write
 
 
 def start(*words):
     return subprocess.Popen([str(program), *map(str, words)], cwd=folder, stderr=subprocess.PIPE, text=True)
 
 
-def text(name):
-    return (folder / name).read_text(encoding="utf-8")
-
-
 def wait_for_rows(name, least):
     """Until the share has a digest behind so many rows."""
     for _ in range(600):
-        if (folder / name).exists() and any(int(n) >= least for n in re.findall(r"^# (\d+) ", text(name), re.M)):
+        if (folder / name).exists() and any(int(n) >= least for n in re.findall(r"^# (\d+) ", read(name), re.M)):
             return
         time.sleep(0.02)
     demand(False, f"{name}: never {least} rows")
 
 
-shutil.rmtree(folder, ignore_errors=True)
-folder.mkdir(parents=True)
 plan = {
     "schema": "impact-damper/plan/1",
     "description": "for a test",
@@ -74,27 +41,27 @@ plan = {
                    "loss_factor_at=10", "largest_impact_speed", "largest_wall_force"],
 }
 shutil.copy(source / "data/examples/mast.json", folder)
-(folder / "plan.json").write_text(json.dumps(plan))
+write("plan.json", plan)
 
 # The same bytes with any number of threads and parts.
 for threads in (1, 2, 5):
     call("sweep", "plan.json", "--threads", threads, "-o", f"threads{threads}.csv")
-table, description = text("threads1.csv"), text("threads1.csv.json")
+table, description = read("threads1.csv"), read("threads1.csv.json")
 for threads in (2, 5):
-    demand(text(f"threads{threads}.csv") == table, f"{threads} threads: another table")
-    demand(text(f"threads{threads}.csv.json") == description, f"{threads} threads: another description")
+    demand(read(f"threads{threads}.csv") == table, f"{threads} threads: another table")
+    demand(read(f"threads{threads}.csv.json") == description, f"{threads} threads: another description")
 for part in (2, 3, 1):
     call("sweep", "plan.json", "--part", f"{part}/3", "-o", "parts.csv")
 parts = [f"parts.csv.part-{part}-of-3" for part in (1, 2, 3)]
 call("merge", parts[2], parts[0], parts[1], "-o", "parts.csv")
-demand(text("parts.csv") == table, "parts: another table")
-demand(text("parts.csv.json") == description, "parts: another description")
+demand(read("parts.csv") == table, "parts: another table")
+demand(read("parts.csv.json") == description, "parts: another description")
 demand(sorted(each.name for each in folder.glob("*.part-*")) == parts, "shares are left over")
 
 # Another seed is another table; the deviations do not depend on the grid.
-(folder / "seed.json").write_text(json.dumps({**plan, "samples": {**plan["samples"], "seed": 8}}))
+write("seed.json", {**plan, "samples": {**plan["samples"], "seed": 8}})
 call("sweep", "seed.json", "-o", "seed.csv")
-demand(text("seed.csv") != table, "another seed makes the same table")
+demand(read("seed.csv") != table, "another seed makes the same table")
 
 # What schemas say, and what other programs read.
 whole = json.loads(description)
@@ -104,8 +71,7 @@ errors = [error.message for error in validator("sweep").iter_errors(whole)] + [
 demand(not errors, f"not as the schema says: {errors}")
 demand(whole["table"] == {"rows": 600, "bytes": len(table), "sha256": hashlib.sha256(table.encode()).hexdigest()},
        f"the description of the table: {whole['table']}")
-head, _, seal = description.rpartition(', "sha256": "')
-demand(hashlib.sha256(head.encode()).hexdigest() == seal[:64], "the description's own digest")
+demand(has_its_digest(description), "the description's own digest")
 rows = list(csv.DictReader(table.splitlines()))
 demand(list(rows[0]) == [column["name"] for column in whole["columns"]], "columns are not as described")
 demand("\r" not in table and len(rows) == 600, "not one row for each run")
@@ -120,9 +86,9 @@ demand(all(row["end"] == "done" and row["problem"] == "" for row in rows if row 
 
 # Rows hold the numbers of runs of their scenes.
 for row in [row for row in rows if row not in wrong][::97]:
-    scene = {**json.loads((folder / "mast.json").read_text()), "clearance": float(row["clearance_sampled"]),
+    scene = {**read_json("mast.json"), "clearance": float(row["clearance_sampled"]),
              "restitution": float(row["restitution"]), "secondary_mass": float(row["secondary_mass"])}
-    (folder / "scene.json").write_text(json.dumps(scene))
+    write("scene.json", scene)
     run = json.loads(call("run", "--scene", "scene.json", "--record", "half_cycles,impacts"))
     length, second = run["units"]["length_m"] * 1e3, run["units"]["time_s"]
     half = run["half_cycles"]
@@ -134,18 +100,18 @@ for row in [row for row in rows if row not in wrong][::97]:
 
 # So do those of several dampers in units.
 boxes = json.loads((source / "data/examples/mast_boxes.json").read_text())
-(folder / "boxes.json").write_text(json.dumps(boxes))
+write("boxes.json", boxes)
 call("sweep", "--scene", "boxes.json", "--vary", "clearance_1=40,60", "--keep", "impacts", "-o", "boxes.csv")
-for row in csv.DictReader(text("boxes.csv").splitlines()):
+for row in csv.DictReader(read("boxes.csv").splitlines()):
     boxes["dampers"][0]["clearance"] = float(row["clearance_1"])
-    (folder / "scene.json").write_text(json.dumps(boxes))
+    write("scene.json", boxes)
     run = json.loads(call("run", "--scene", "scene.json", "--record", "impacts"))
     demand(int(row["impacts"]) == len(run["impacts"]["time"]), f"{row}: impacts of several dampers in units")
 
 # Killed, and again, and interrupted: the same command goes on, to the same bytes.
 words = ["sweep", "plan.json", "--threads", "1", "-o", "killed.csv"]
 slow = {**plan, "quantities": plan["quantities"] + ["impact_energy_share"]}
-(folder / "slow.json").write_text(json.dumps(slow))
+write("slow.json", slow)
 call("sweep", "slow.json", "-o", "undisturbed.csv")
 words = ["sweep", "slow.json", "--threads", "2", "-o", "killed.csv"]
 share = "killed.csv.part-1-of-1"
@@ -159,25 +125,25 @@ for least, end in ((64, signal.SIGKILL), (192, signal.SIGKILL), (320, signal.SIG
         demand(re.search(r"^impact-damper: interrupted: \d+ of 600 runs are kept in killed.csv.part-1-of-1; the same command goes on "
                          r"from there$", said, re.M), f"interrupted: {said}")
     demand(not (folder / "killed.csv").exists(), f"{end}: a table that is not whole")
-kept = text(share)
+kept = read(share)
 # Another plan or another program is not mixed with what is kept.
 said = call("sweep", "plan.json", "-o", "killed.csv", code=3)
 demand("killed.csv.part-1-of-1: holds runs of another plan, part or program" in said and "the program is the same" in said, f"another plan: {said}")
-demand(text(share) == kept, "another plan has changed what was kept")
+demand(read(share) == kept, "another plan has changed what was kept")
 version = re.search(r'"program": "(\S+)', kept)[1]
-(folder / share).write_text(kept.replace(f'"program": "{version}', '"program": "9.9.9', 1))
+write(share, kept.replace(f'"program": "{version}', '"program": "9.9.9', 1))
 said = call(*words, code=3)
 demand("of another plan, part or program" in said and "this program is " in said, f"another version: {said}")
-(folder / share).write_text(kept)
+write(share, kept)
 call(*words)
-demand(text("killed.csv") == text("undisturbed.csv"), "killed: another table")
+demand(read("killed.csv") == read("undisturbed.csv"), "killed: another table")
 demand(not list(folder.glob("*killed*part*")) and not list(folder.glob(".*")), "killed: files are left")
 
 # Parts of another version, doubled or missing are not joined; nor is a row that is doubled.
-part = text(parts[1])
-(folder / "other").write_text(part.replace(f'"program": "{version}', '"program": "9.9.9', 1))
-(folder / "doubled").write_text(re.sub(r"(?m)^(250,.*\n)", r"\1\1", part))
-(folder / "short").write_text(part[:part.rindex("\n350,") + 1])
+part = read(parts[1])
+write("other", part.replace(f'"program": "{version}', '"program": "9.9.9', 1))
+write("doubled", re.sub(r"(?m)^(250,.*\n)", r"\1\1", part))
+write("short", part[:part.rindex("\n350,") + 1])
 for files, code, expected in ((["other"], 3, "must be of the same plan and program"), (["doubled"], 3, "is not what it was when it was written"),
                               (["short"], 3, "is not what it was when it was written"), ([], 3, "part 2 of 3 is missing"),
                               ([parts[1], parts[1]], 3, "is part 2, as"), (["nowhere"], 5, "nowhere: cannot be read"),
@@ -204,7 +170,7 @@ else:
                                                         for text, value in zip(expected, values))
         demand(same, f"HDF5: the column {name}")
         demand([each.strip() for each in attributes] == [f'"{column["meaning"]}"', f'"{column["unit"]}"'], f"HDF5: {attributes}")
-    holds, made = json.loads(text("table.h5.json"))["table"], (folder / "table.h5").read_bytes()
+    holds, made = json.loads(read("table.h5.json"))["table"], (folder / "table.h5").read_bytes()
     demand(holds == {"rows": 600, "bytes": len(made), "sha256": hashlib.sha256(made).hexdigest()}, f"HDF5: {holds}")
     time.sleep(1.1)  # a time of day in the file would be another one
     call("merge", parts[2], parts[0], parts[1], "-o", "merged.h5")
@@ -218,7 +184,6 @@ first = start(*words[:-1], "both.csv")
 wait_for_rows("both.csv.part-1-of-1", 0)
 demand("another sweep is writing it" in call(*words[:-1], "both.csv", code=5), "two sweeps at a time")
 first.communicate()
-demand(first.returncode == 0 and text("both.csv") == text("undisturbed.csv"), "the first of two sweeps")
+demand(first.returncode == 0 and read("both.csv") == read("undisturbed.csv"), "the first of two sweeps")
 
-print("\n".join(faults + [f"{len(faults)} faults"]))
-sys.exit(1 if faults else 0)
+finish()

@@ -22,6 +22,12 @@ QUICK = ["-O1"]
 # With all instructions that this processor has. g++ fuses products with sums from -O2 on, unless the package's options
 # forbid it.
 FUSING = ["-O2", "-march=native"]
+STRANGER = """cmake_minimum_required(VERSION 3.16)
+project(stranger LANGUAGES CXX)
+find_package(impact_damper 0.1 REQUIRED)
+add_executable(columns columns.cpp)
+target_link_libraries(columns PRIVATE impact_damper::impact_damper)
+"""
 PRIVATE = re.compile(r"eigen3?/|nlohmann", re.I)
 
 
@@ -62,7 +68,11 @@ def the_examples_print_what_stands_beside_them():
 
 
 def an_engine_compiled_here_gives_the_programs_bytes():
-    columns = built("stranger", SOURCE / "tests/installed/stranger", FUSING) / "columns"
+    project = FOLDER / "own"
+    project.mkdir()
+    (project / "CMakeLists.txt").write_text(STRANGER)
+    shutil.copy(SOURCE / "tests/installed/columns.cpp", project)
+    columns = built("stranger", project, FUSING) / "columns"
     scenes = [SOURCE / f"tests/same_bits/scenes/{name}.json" for name in ("forced-near-resonance", "dampers-forced")]
     for engine, scene in itertools.product(("exact", "restitution", "cem"), scenes):
         wanted = run(PROGRAM, "run", "--engine", engine, "--scene", scene, "--history", "0:150:301",

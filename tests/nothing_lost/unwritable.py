@@ -15,6 +15,9 @@ from pathlib import Path
 
 import scratch
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from packed_files import read  # noqa: E402
+
 FULL, READ_ONLY, DENIED = "No space left on device", "Read-only file system", "Permission denied"
 
 
@@ -209,7 +212,7 @@ def main():
     first = scratch.make(tree, "figures")
     if first.returncode != 0:
         sys.exit(first.stdout + first.stderr)
-    shutil.copy(scratch.SOURCE / "tests" / "cli" / "files" / "claims.json", tree / "claims.json")
+    (tree / "claims.json").write_bytes(read(scratch.SOURCE / "tests/cli/files.packed")["claims.json"][1])
     p = Programs(options, tree, check)
     skipped = []
     devices(p)

@@ -13,7 +13,8 @@ from pathlib import Path
 
 from differences import compare
 from reference import differences
-from scan import WORDS, findings
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "checks"))
+from sources import WORDS, findings  # noqa: E402
 
 SOURCE = Path(__file__).resolve().parents[2]
 RUN = b"""{

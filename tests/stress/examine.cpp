@@ -6,7 +6,7 @@
 
 #include "impact_damper/analysis/consistency.hpp"
 #include "impact_damper/simulate.hpp"
-#include "report.hpp"
+#include "stress.hpp"
 
 namespace stress {
 

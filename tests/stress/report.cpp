@@ -1,9 +1,9 @@
-#include "report.hpp"
-
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+
+#include "stress.hpp"
 
 namespace stress {
 namespace {

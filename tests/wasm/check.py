@@ -35,6 +35,14 @@ CLOSED_FORM = [{"name": "exact"}, {"name": "restitution"}]
 ALL = CLOSED_FORM + [{"name": "cem", "time_step": 4e-4}]
 SCENES = [(scene, engine) for folder, engines in (("data/scenes", CLOSED_FORM), ("tests/same_bits/scenes", ALL))
           for scene in sorted((SOURCE / folder).glob("*.json")) for engine in engines]
+PAGE = """<!doctype html>
+<link rel="icon" href="data:,">
+<title>The package in a browser</title>
+<script type="module">
+  import { run } from "./package/index.js";
+  window.run = run;
+</script>
+"""
 WINDOW = {"begin": 0, "end": 30, "count": 301}
 WRONG = ["{", "[]", '{"mass_ratio": -1}', '{"x0": 1, "until_time": 1, "foo": 2}', '{"X0": 1, "until_time": 1}', '{"x0": "Übung", "until_time": 1}',
          '{"x0": 1, "until_time": 1e400}']
@@ -207,7 +215,7 @@ class Package(unittest.TestCase):
     def test_in_a_browser_run_files_are_the_programs(self):
         folder = WORK / "browser"
         folder.mkdir()
-        shutil.copy(HERE / "page.html", folder)
+        (folder / "page.html").write_text(PAGE)
         (folder / "package").symlink_to(self.package)
         served = Served(folder)
         with chromium.Page() as page:

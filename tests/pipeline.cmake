@@ -5,7 +5,38 @@ cmake_minimum_required(VERSION 3.25)
 file(REMOVE_RECURSE ${FOLDER})
 # file(COPY) takes files with equal time stamps for the same, as those of one checkout may have.
 file(COPY ${FIGURES}/ DESTINATION ${FOLDER}/figures PATTERN catalogue.json EXCLUDE)
-file(COPY ${FILES}/ DESTINATION ${FOLDER}/figures)
+file(WRITE ${FOLDER}/figures/small.json [[
+{
+  "description": "The last tenth of the base case's decay",
+  "x0": 0.6,
+  "until_time": 400,
+  "until_amplitude": 0.03
+}
+]])
+file(WRITE ${FOLDER}/figures/catalogue.json [[
+{
+  "schema": "impact-damper/catalogue/1",
+  "scenes": [
+    {"scene": "small", "record": ["half_cycles", "impacts", "contacts", "history"],
+     "history_below": [{"amplitude": 0.2, "length": 12, "count": 200}]}
+  ],
+  "figures": [
+    {"figure": "5", "title": "Motion", "table": "motion", "window": 0.2, "curves": [{"scene": "small"}],
+     "script": "fig05.gp"},
+    {"figure": "8", "title": "It's a loss factor", "table": "loss_factor", "ordinate": "eta", "down_to": 0.1,
+     "curves": [{"scene": "small"}], "script": "single.gp"}
+  ]
+}
+]])
+file(WRITE ${FOLDER}/figures/single.gp [[
+from = 0.03
+styles = "1"
+theory = "1"
+logarithmic = "xy"
+ordinate = "η"
+set ylabel "loss factor ".ordinate
+load folder."/loss.gp"
+]])
 file(MAKE_DIRECTORY ${FOLDER}/runs ${FOLDER}/series ${FOLDER}/pictures)
 
 # step(COMMAND...): in FOLDER; sets `code` and `err`.

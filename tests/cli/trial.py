@@ -1,0 +1,73 @@
+"""What the scripts of these tests share, each of which is called as SCRIPT PROGRAM SOURCE FOLDER [WORD...].
+
+`program` is impact-damper, `source` the project's folder, `folder` is made anew by importing this, for the script's files.
+A script ends with finish(). Exit code 1: faults, one a line; 77: what the script needs is not here.
+"""
+import hashlib
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+program, source, folder = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
+shutil.rmtree(folder, ignore_errors=True)
+folder.mkdir(parents=True)
+faults = []
+
+
+def demand(holds, what):
+    if not holds:
+        faults.append(what)
+
+
+def call(*words, code=0, **more):
+    """The program in `folder` ends with this exit code, or with any if None. Returns what it prints; where an error is wanted, with
+    exit code 2 or higher, or anything, what it says of it."""
+    done = subprocess.run([program, *map(str, words)], cwd=folder, capture_output=True, text=True, **more)
+    demand(code is None or done.returncode == code, f"{words}: exit code {done.returncode} instead of {code}: {done.stderr}{done.stdout[:2000]}")
+    return done.stdout if code in (0, 1) else done.stderr
+
+
+def read(name):
+    return (folder / name).read_text(encoding="utf-8")
+
+
+def read_json(name):
+    return json.loads(read(name))
+
+
+def write(name, content):
+    """A text, or a document as JSON."""
+    (folder / name).write_text(content if isinstance(content, str) else json.dumps(content), encoding="utf-8", newline="")
+
+
+def validator(kind):
+    """By the published schema of this kind of files. Ends the script where Python's validator is not installed."""
+    try:
+        from jsonschema import Draft7Validator, RefResolver
+    except ImportError:
+        print("skipped: Python's jsonschema is not here (Debian: python3-jsonschema)")
+        sys.exit(77)
+    path = source / f"data/schema/{kind}.schema.json"
+    schema = json.loads(path.read_text(encoding="utf-8"))
+    Draft7Validator.check_schema(schema)
+    return Draft7Validator(schema, resolver=RefResolver(path.as_uri(), schema))
+
+
+def has_its_digest(text):
+    """Whether a file of the program ends with the digest of what is before."""
+    body, _, seal = text.rpartition(', "sha256": "')
+    return hashlib.sha256(body.encode()).hexdigest() == seal.split('"')[0]
+
+
+def sealed(text):
+    """A run file or table's description that was made or changed by hand, with the digest of its content."""
+    body = re.sub(r'(, "sha256": "\w*")?\}\s*\}\s*\Z', "", text)
+    return f'{body}, "sha256": "{hashlib.sha256(body.encode()).hexdigest()}"}}\n}}\n'
+
+
+def finish():
+    print("\n".join([*faults, f"{len(faults)} faults"]))
+    sys.exit(bool(faults))
