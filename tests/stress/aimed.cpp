@@ -7,7 +7,7 @@
 #include "counted.hpp"
 #include "examine.hpp"
 #include "impact_damper/simulate.hpp"
-#include "random_scenes.hpp"
+#include "shared_scenes.hpp"
 #include "stress.hpp"
 #include "watch.hpp"
 

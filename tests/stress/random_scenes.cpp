@@ -6,8 +6,6 @@
 // on the scene alone. With 100 times the stiffness the distance must therefore shrink to a tenth. That is
 // asked for wherever the first four impacts are no grazing ones, tau is short beside all else, and before
 // anything can grow: a missed impact, a false one, or another law of impact would not shrink at all.
-#include "random_scenes.hpp"
-
 #include <atomic>
 #include <cmath>
 #include <cstdio>
@@ -18,6 +16,7 @@
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/simulate.hpp"
+#include "shared_scenes.hpp"
 #include "stress.hpp"
 
 namespace stress {
