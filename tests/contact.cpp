@@ -1,3 +1,4 @@
+// The motion in contact with a compliant wall, what a wall is, and the work that motions do.
 #include "impact_damper/motion/contact.hpp"
 
 #include <doctest/doctest.h>
@@ -7,6 +8,9 @@
 #include <limits>
 #include <numbers>
 
+#include "impact_damper/io/scene_file.hpp"
+#include "impact_damper/motion/contact_work.hpp"
+#include "impact_damper/motion/flight.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "reference.hpp"
 
@@ -65,10 +69,7 @@ TEST_CASE_TEMPLATE("the two quadratic factors give back the contact's characteri
     const Real c = 2 * zeta_m_closed_form(Real(scene.damper().restitution)) * square_root(k);
     const ContactFactors<Real> f = factor_contact(nu, zeta, k, c);
     CAPTURE(n);
-    CAPTURE(scene.damper().mass_ratio);
-    CAPTURE(scene.damper().restitution);
-    CAPTURE(scene.damper().wall_stiffness);
-    CAPTURE(scene.damping_ratio);
+    CAPTURE(scene_text(scene));
     CHECK(f.p >= 0);
     CHECK(f.p2 >= 0);
     CHECK(f.b > 0);
@@ -116,12 +117,7 @@ TEST_CASE("contact moves as the coupled linear system does, for every wall, mass
                               magnitude(found.y - expected[2]) / (fast / root_k),
                               magnitude(found.w - expected[3]) / fast};
     CAPTURE(n);
-    CAPTURE(scene.damper().mass_ratio);
-    CAPTURE(scene.damper().restitution);
-    CAPTURE(scene.damper().wall_stiffness);
-    CAPTURE(scene.damping_ratio);
-    CAPTURE(scene.force_amplitude);
-    CAPTURE(scene.force_frequency);
+    CAPTURE(scene_text(scene));
     CAPTURE(t * rate);
     CAPTURE(t);
     for (int i = 0; i < 4; ++i) {
@@ -346,5 +342,97 @@ TEST_CASE("a critically or overdamped wall gives nothing back until something pu
     const double crossing = root * (std::numbers::pi - std::atan2(1.0, -v * root));
     CHECK(left->time > 0.9 * (crossing - 1e-3));
     CHECK(left->time < crossing + 20 / std::sqrt(walls.stiffness) * (1 + nu));
+  }
+}
+
+TEST_CASE("a flight that dies away loses all its energy to its damper, in however long a time") {
+  for (double zeta : {1e-3, 0.5, 0.9, 1.0, 1.1, 30.0, 1e6}) {
+    Scene scene;
+    scene.damping_ratio = zeta;
+    const System<double> system(scene);
+    for (double v : {0.0, -3.0}) {
+      const Flight<double> flight(system, 0, {2, v, 0.5, 0});
+      // The slower rate is never below 1/(2 zeta): exp(-80) is left.
+      const double duration = 40 * (2 * zeta + 1 / zeta);
+      Search<double> search{1};
+      const Work<double> works = work_of(system, flight, 0.0, duration, 0.0, search);
+      CAPTURE(zeta);
+      CAPTURE(v);
+      CHECK(std::abs(works.viscous / ((4 + v * v) / 2) - 1) < 2e-13);  // a sum of up to 2e5 terms
+    }
+  }
+}
+
+namespace {
+
+struct LongContact {
+  Scene scene;
+  double duration;
+};
+
+// Contacts that ring through hundreds to thousands of swings, however pressed the masses are.
+LongContact random_contact(reference::Random& random) {
+  LongContact contact;
+  Scene& scene = contact.scene;
+  scene.damper().mass_ratio = random.log_uniform(1e-3, 10);
+  scene.damper().restitution = random.chance(0.3) ? 1 : random.uniform(0.1, 1);
+  scene.damper().wall_stiffness = random.log_uniform(1e3, 1e5);
+  scene.damping_ratio = random.chance(0.3) ? 0 : random.log_uniform(1e-3, 3);
+  if (random.chance(0.6)) {
+    scene.force_amplitude = random.log_uniform(1e-2, 10);
+    scene.force_frequency = random.chance(0.3) ? 1 : random.log_uniform(0.1, 4);
+  }
+  contact.duration = random.uniform(5, 20);
+  return contact;
+}
+
+}  // namespace
+
+TEST_CASE("a long contact's works are those of a quadrature that follows all its ringing") {
+  reference::Random random(31);
+  for (int n = 0; n < 200; ++n) {
+    const LongContact drawn = random_contact(random);
+    const Scene& scene = drawn.scene;
+    const double duration = drawn.duration;
+    const System<double> system(scene);
+    const ContactModes<double> walls(system, zeta_m<double>(scene.damper(), Calibration::fixed_wall));
+    const double begin = random.uniform(0, 10), root_k = std::sqrt(walls.stiffness);
+    const Contact<double> contact(
+        walls, begin, {random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2) / root_k, -1.5},
+        Wall::left);
+    const double wall_damping = system.nu * walls.damping;
+    Search<double> search{1};
+    const Work<double> found = work_of(system, contact, begin, duration, wall_damping, search);
+    const Work<double> expected =
+        work_of<Contact<double>>(system, contact, begin, duration, wall_damping, search);
+    CAPTURE(n);
+    CAPTURE(scene_text(scene));
+    // Energies are of order one; a swing's phase is rounded by epsilon times its number of radians.
+    const double radians = walls.fast.rate() * duration;
+    const double allowed = 1e-15 * (16 + radians) * (1 + expected.turnover);
+    CHECK(std::abs(found.viscous - expected.viscous) < allowed);
+    CHECK(std::abs(found.wall - expected.wall) < allowed);
+    CHECK(std::abs(found.forcing - expected.forcing) < allowed);
+  }
+}
+
+TEST_CASE("the closed form gives back the restitution it came from") {
+  for (double e : {1e-6, 0.01, 0.4, 0.6, 0.8, 0.99, 1 - 1e-12}) {
+    const double z = zeta_m_closed_form(e);
+    CHECK(std::exp(-std::numbers::pi * z / std::sqrt((1 - z) * (1 + z))) == doctest::Approx(e).epsilon(1e-9));
+  }
+  CHECK(zeta_m_closed_form(1.0) == 0);
+  CHECK(zeta_m_closed_form(0.0) == 1);
+}
+
+TEST_CASE(
+    "the paper's iterative subroutine finds the closed form's zeta_m to its 1e-8 in at least 100 steps") {
+  for (double e : {1.0, 0.99, 0.8, 0.6, 0.4, 0.1, 0.01}) {
+    const IterativeZeta found = zeta_m_iterative(e);
+    CHECK(found.steps >= 100);
+    CHECK(found.velocity_error <= 1e-8);
+    // |de/dzeta| >= 0.03 over these e: a velocity error of 1e-8 is at most 4e-7 in zeta_m.
+    CHECK(std::abs(found.zeta_m - zeta_m_closed_form(e)) < 4e-7);
+    CHECK(std::abs(zeta_m_iterative(e, 1e-13).zeta_m - zeta_m_closed_form(e)) < 4e-12);
   }
 }

@@ -3,11 +3,12 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
-#include "random_scenes.hpp"
+#include "shared_scenes.hpp"
 
 using namespace impact_damper;
-using random_scenes::scene_of, random_scenes::text_of;
+using random_scenes::scene_of;
 
 namespace {
 
@@ -66,7 +67,7 @@ TEST_CASE(
   for (std::uint64_t seed = first_seed; seed < first_seed + seeds; ++seed) {
     const Scene scene = scene_of(seed);
     CAPTURE(seed);
-    CAPTURE(text_of(scene));
+    CAPTURE(scene_text(scene));
     check(scene, options);
   }
 }
@@ -78,7 +79,7 @@ TEST_CASE("a scene whose primary mass has hardly moved when it is struck is no e
   for (const std::uint64_t seed : {27136u, 40313u, 99905u, 120138u, 131791u}) {
     Scene scene = scene_of(seed);
     REQUIRE(scene.x0 == 0);
-    CAPTURE(text_of(scene));
+    CAPTURE(scene_text(scene));
     check(scene, options);
   }
 }
@@ -90,7 +91,7 @@ TEST_CASE("any scene that begins between rigid walls runs to its end in the rest
     Scene scene = scene_of(seed);
     scene.damper().y0 = std::fmin(std::fmax(scene.damper().y0, 0), 1);
     CAPTURE(seed);
-    CAPTURE(text_of(scene));
+    CAPTURE(scene_text(scene));
     check(scene, options);
   }
 }

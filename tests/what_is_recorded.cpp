@@ -7,51 +7,20 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <map>
 #include <string>
 #include <vector>
 
 #include "engines/observed.hpp"
 #include "impact_damper/engines/cem_scheme.hpp"
-#include "impact_damper/io/run_columns.hpp"
+#include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
-#include "random_scenes.hpp"
-#include "round_scenes.hpp"
+#include "same_run.hpp"
+#include "shared_scenes.hpp"
 
 using namespace impact_damper;
+using reference::absent, reference::Columns, reference::columns_of;
 
 namespace {
-
-constexpr double absent = std::numeric_limits<double>::infinity();  // no recorded number is infinite
-
-// All that a run records, by name, each as a column of numbers.
-using Columns = std::map<std::string, std::vector<double>>;
-
-double as_double(double value) { return value; }
-double as_double(const std::optional<double>& value) { return value.value_or(absent); }
-
-template <class Owner>
-void add_columns(Columns& all, const std::string& above, const Owner& owner) {
-  for_each_column(owner, false, [&](const RunColumnInfo& info, const auto& value) {
-    using Value = std::remove_cvref_t<decltype(value)>;
-    const std::string name = above + std::string(info.name);
-    if constexpr (HasRunColumns<Value>)
-      add_columns(all, name + '.', value);
-    else if constexpr (std::is_arithmetic_v<Value>)
-      all[name] = {double(value)};
-    else if constexpr (!PartsOfDampers<Value>)
-      for (std::vector<double>& column = all[name]; const auto& each : value)
-        column.push_back(as_double(in_file(each)));
-  });
-}
-
-Columns columns_of(const Run& run) {
-  Columns all;
-  for_each_column(run, false, [&](const RunColumnInfo& info, const auto& section) {
-    if (section) add_columns(all, std::string(info.name) + '.', *section);
-  });
-  return all;
-}
 
 bool same_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
@@ -103,7 +72,7 @@ Trial trial_of(std::uint64_t seed, bool round) {
   if (scene.until_amplitude == 0) scene.until_amplitude.reset();
   std::visit([](auto& options) { options.budget.max_impacts = 1000; }, trial.engine);
   trial.text = std::string(name_of(trial.engine)) + (round ? ", round scene " : ", random scene ") +
-               std::to_string(seed) + ": " + random_scenes::text_of(scene);
+               std::to_string(seed) + ": " + scene_text(scene);
   if (scene.until_amplitude) trial.text += ", until_amplitude " + std::to_string(*scene.until_amplitude);
   return trial;
 }
@@ -251,14 +220,6 @@ std::string cuts_are_beginnings(Trial& trial) {
     found = budgeted("max_time", [&](auto& options) { options.budget.max_time = whole.end_time * 0.7; });
   if (found.empty()) found = budgeted("max_steps", [&](auto& options) { options.max_steps = fewer_steps; });
   return found;
-}
-
-Scene mirrored(Scene scene) {
-  for (const SceneNumber& number :
-       std::initializer_list<SceneNumber>{&Scene::x0, &Scene::v0, &SceneDamper::w0, &Scene::force_amplitude})
-    number.in(scene) = -number.in(scene);
-  scene.damper().y0 = 1 - scene.damper().y0;
-  return scene;
 }
 
 // What a mirrored run says of the motion itself.
@@ -438,7 +399,7 @@ TEST_CASE(
   const Record record{.impacts = true, .contacts = true};
   for (Scene scene : scenes) {
     scene.until_time = 0.5;
-    CAPTURE(random_scenes::text_of(scene));
+    CAPTURE(scene_text(scene));
     for (const Scene& start : {scene, mirrored(scene)}) {
       for (bool locate : {false, true}) {
         const Run run = simulate(start, Cem{.locate = locate}, record);

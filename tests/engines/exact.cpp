@@ -1,5 +1,6 @@
 #include "impact_damper/engines/exact.hpp"
 
+#include "impact_damper/engines/exact_dampers.hpp"
 #include "observed.hpp"
 
 namespace impact_damper {
@@ -11,5 +12,10 @@ Outcome observed(const Scene& scene, const Exact& options, TestObserver<Real>& o
 }
 template Outcome observed(const Scene&, const Exact&, TestObserver<double>&);
 template Outcome observed(const Scene&, const Exact&, TestObserver<long double>&);
+
+Outcome observed_list(const Scene& scene, const Exact& options, TestObserver<long double>& observer) {
+  return with_system<long double>(
+      scene, [&](const auto& system) { return run_exact_dampers(system, scene, options, observer, {}); });
+}
 
 }  // namespace impact_damper

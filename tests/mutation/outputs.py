@@ -24,9 +24,8 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
 # Where faults are planted, and the test programs that look there.
-OWN = {"exact": ["recorded"], "restitution": ["recorded"], "cem": ["recorded"],
-       "exact-dampers": ["recorded_dampers", "recorded"], "restitution-dampers": ["recorded_dampers", "recorded"],
-       "cem-dampers": ["recorded_dampers", "recorded"], "file": ["run_file"], "read": ["run_file"], "table": ["series"],
+OWN = {"exact": ["recorded"], "restitution": ["recorded"], "cem": ["recorded"], "exact-dampers": ["recorded"],
+       "restitution-dampers": ["recorded"], "cem-dampers": ["recorded"], "file": ["run_file"], "read": ["run_file"], "table": ["series"],
        "measure": ["measures", "measures_of_runs", "measures_of_responses"]}
 # The case that notices nearly all of them, where others of its program take far longer.
 MOSTLY = {engine: f"recorded: all that the {name} records is*"

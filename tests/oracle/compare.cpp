@@ -10,7 +10,6 @@
 
 #include "impact_damper/simulate.hpp"
 #include "list_of_one.hpp"
-#include "print.hpp"
 
 namespace oracle {
 namespace {

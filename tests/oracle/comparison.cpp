@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "compare.hpp"
-#include "lists.hpp"
+#include "scenes.hpp"
 
 using namespace oracle;
 using namespace impact_damper;

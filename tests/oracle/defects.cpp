@@ -7,8 +7,9 @@
 
 #include "compare.hpp"
 #include "impact_damper/io/run_file.hpp"
+#include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
-#include "lists.hpp"
+#include "scenes.hpp"
 
 using namespace impact_damper;
 
@@ -26,7 +27,7 @@ void agrees(const Scene& scene, const Engine& engine, double until = 1) {
 // By the engine of lists.
 oracle::Comparison agrees_as_list(const Scene& scene, const Engine& engine,
                                   double allowed = oracle::operations) {
-  CAPTURE(oracle::text_of(scene));
+  CAPTURE(scene_text(scene));
   const oracle::Comparison result = oracle::compare(scene, engine, {.as_list = true, .allowed = allowed});
   CHECK(result.until == *scene.until_time);
   CHECK(result.differences.size() == 0);

@@ -20,8 +20,6 @@
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/scene_file.hpp"
-#include "lists.hpp"
-#include "print.hpp"
 #include "scenes.hpp"
 
 namespace oracle {
@@ -98,7 +96,7 @@ Row compare_all(const std::string& kind, const std::string& engine, const Option
     Scene failed = scene(i);
     failed.until_time = each.until;
     std::string text = "seed " + seed + ": " + engine + " " +
-                       (options.several ? text_of(failed) : options_of(failed) + "\n");
+                       (options.several ? scene_text(failed) : options_of(failed) + "\n");
     for (std::size_t n = 0; n < std::min<std::size_t>(each.differences.size(), 4); ++n)
       text += "    " + each.differences[n] + "\n";
     if (each.differences.size() > 4)

@@ -20,6 +20,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "impact_damper/run.hpp"
@@ -127,5 +128,9 @@ struct Answer {
 };
 
 Answer answer_to(const Question& question);
+
+std::string text(Quad number, int digits = 25);
+// One event a line, in order of time, then the energies.
+std::string lines_of(const Answer& answer);
 
 }  // namespace oracle

@@ -1,13 +1,11 @@
 // Scenes aimed at what is hard: where a last bit decides, where time is long or nothing happens in it.
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numbers>
 
 #include "counted.hpp"
-#include "examine.hpp"
 #include "impact_damper/simulate.hpp"
-#include "random_scenes.hpp"
+#include "reference.hpp"
 #include "stress.hpp"
 #include "watch.hpp"
 
@@ -18,42 +16,9 @@ using namespace impact_damper;
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-const char* name_of_engine(const Engine& engine) { return name_of(engine).data(); }
 
 Check about(const std::string& what, const std::string& allowed) {
   return {.subject = "aimed", .what = what, .measured = {}, .allowed = allowed};
-}
-
-std::string in_full(const Scene& scene, const Engine& engine) {
-  return std::string(name_of_engine(engine)) + "; {" + random_scenes::text_of(scene) + "}";
-}
-
-// All that any scene promises; false if something is broken, which is then a miss.
-bool keep_promises(Check& check, const std::string& which, const Scene& scene, const Engine& engine) {
-  ++check.cases;
-  const Examined examined = examine(scene, engine);
-  for (std::size_t p = 0; p < promises.size(); ++p) {
-    if (examined.broken[p].empty()) continue;
-    check.miss(which + " " + promises[p] + ": " + examined.broken[p] + "; " + in_full(scene, engine));
-  }
-  return examined.all_kept();
-}
-
-double steps_from(double value, int ulps) {
-  for (; ulps > 0; --ulps) value = std::nextafter(value, infinity);
-  for (; ulps < 0; ++ulps) value = std::nextafter(value, -infinity);
-  return value;
-}
-
-// Two neighbouring doubles between which `predicate`, false at `low` and true at `high`, turns.
-double last_bit(double low, double high, const std::function<bool(double)>& predicate) {
-  for (;;) {
-    const double middle = low + (high - low) / 2;
-    if (!(middle > std::min(low, high) && middle < std::max(low, high))) return high;
-    (predicate(middle) ? high : low) = middle;
-  }
 }
 
 // Where e = 1 keeps bounces of any height for ever; and as much time as the longest scene here.
@@ -124,7 +89,7 @@ Check on_a_wall() {
                 scene.damper().restitution = e, scene.force_amplitude = f0;
                 // A lossless wall rings for ever, which is long to follow.
                 scene.until_time = std::abs(w0) > 1 ? 1e-6 : e == 1 ? 0.03 : 2;
-                if (!keep_promises(check, "case", scene, engine)) continue;
+                if (!keep_promises(check, "case", scene, engine).all_kept()) continue;
                 const Impacts impacts =
                     *simulate(scene, engine, {.half_cycles = false, .impacts = true}).impacts;
                 const bool at_once = !impacts.time.empty() && impacts.time[0] == 0;
@@ -138,7 +103,7 @@ Check on_a_wall() {
       }
     }
   }
-  check.measured = check.missed == 0 ? "all" : "not all";
+  check.measured = check.all_or_not();
   return check;
 }
 
@@ -205,13 +170,13 @@ Check accumulation_at_a_crossing() {
       }
     }
   }
-  check.measured = check.missed == 0 ? "all" : "not all";
+  check.measured = check.all_or_not();
   return check;
 }
 
 Check lossless(const Options& options, const Engine& engine) {
   const std::int64_t impacts = options.brief ? 100'000 : 10'000'000;
-  Check check = about(std::string(name_of_engine(engine)) + ", e = 1: drift of the energy over " +
+  Check check = about(std::string(name_of(engine)) + ", e = 1: drift of the energy over " +
                           (options.brief ? "1e5" : "1e7") + " impacts",
                       rounded(closed_balance));
   Engine budgeted = engine;
@@ -224,7 +189,7 @@ Check lossless(const Options& options, const Engine& engine) {
     scene.damper().w0 = 0.3;
     scene.until_time = 1e12;
     ++check.cases;
-    std::fprintf(stderr, "stress: %s\n", check.what.c_str());
+    say(check.what);
     const Run run = simulate(scene, budgeted, {.half_cycles = false, .energy = true});
     const EnergyBalance& balance = *run.energy;
     const double drift = std::abs(balance.final.total() / balance.initial.total() - 1);
@@ -337,7 +302,7 @@ Check long_times() {
     for (const Engine& engine : both) {
       if (std::holds_alternative<Restitution>(engine) && !(s.y0 >= 0 && s.y0 <= 1)) continue;
       ++check.cases;
-      std::fprintf(stderr, "stress: to t = 1e9: %s\n", in_full(scene, engine).c_str());
+      say("to t = 1e9: " + in_full(scene, engine));
       const Run run = simulate(scene, engine, {.half_cycles = false, .contacts = true, .energy = true});
       const double open = std::abs(run.energy->residual);
       worst.take(open);
@@ -357,7 +322,6 @@ Check long_times() {
 std::vector<Check> aimed_scenes(const Options& options) {
   std::vector<Check> checks{grazing(options)};
   if (options.seed) return checks;  // the others have none
-  const auto say = [](const char* what) { std::fprintf(stderr, "stress: %s\n", what); };
   say("release on a wall");
   checks.push_back(on_a_wall());
   say("impacts within a rounding");

@@ -3,12 +3,9 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <string>
 
-#include "examine.hpp"
-#include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
 #include "reference.hpp"
 #include "stress.hpp"
@@ -21,12 +18,6 @@ namespace {
 
 constexpr Budget few_impacts{.max_impacts = 400, .max_time = 1e9};
 const std::array<Engine, 2> both{Exact{.budget = few_impacts}, Restitution{.budget = few_impacts}};
-
-std::string in_full(const Scene& scene, const Engine& engine) {
-  std::string text = std::string(name_of(engine)) + "; " + scene_text(scene);
-  std::ranges::replace(text, '\n', ' ');
-  return text;
-}
 
 Check about(const std::string& what, const std::string& allowed) {
   return {.subject = "dampers", .what = what, .measured = {}, .allowed = allowed};
@@ -63,24 +54,13 @@ Scene list_of(std::uint64_t seed) {
   return scene;
 }
 
-void note(Check& check, const std::string& which, const Scene& scene, const Engine& engine, Worst& residual,
-          Worst& outside) {
-  ++check.cases;
-  const Examined examined = examine(scene, engine);
-  residual.take(examined.residual);
-  outside.take(examined.outside);
-  for (std::size_t p = 0; p < promises.size(); ++p)
-    if (!examined.broken[p].empty())
-      check.miss(which + " " + promises[p] + ": " + examined.broken[p] + "; " + in_full(scene, engine));
-}
-
 std::vector<Check> random_lists(const Options& options) {
   constexpr std::int64_t block = 64;
   const std::uint64_t first = options.seed.value_or(1);
   const std::int64_t count = options.seed ? 1 : options.scenes / 10, blocks = (count + block - 1) / block;
   struct Part {
     std::array<Check, 2> checks;
-    std::array<Worst, 2> residual, outside;
+    std::array<Worst, 2> residual;
   };
   std::vector<Part> parts(static_cast<std::size_t>(blocks));
   Progress progress("random lists of dampers");
@@ -90,8 +70,9 @@ std::vector<Check> random_lists(const Options& options) {
     for (std::int64_t i = b * block; i < std::min(count, (b + 1) * block); ++i) {
       const std::uint64_t seed = first + std::uint64_t(i);
       for (std::size_t e = 0; e < 2; ++e)
-        note(part.checks[e], "--only dampers --seed " + std::to_string(seed), list_of(seed), both[e],
-             part.residual[e], part.outside[e]);
+        part.residual[e].take(keep_promises(part.checks[e], "--only dampers --seed " + std::to_string(seed),
+                                            list_of(seed), both[e])
+                                  .residual);
     }
     done += block;
     if (b % 8 == 0) progress.tell(done, count);
@@ -104,31 +85,13 @@ std::vector<Check> random_lists(const Options& options) {
               "all; " + rounded(closed_balance));
     Worst residual;
     for (const Part& part : parts) {
-      whole.cases += part.checks[e].cases;
-      whole.missed += part.checks[e].missed;
-      for (const std::string& miss : part.checks[e].misses)
-        if (whole.misses.size() < Check::most_misses) whole.misses.push_back(miss);
+      whole.add(part.checks[e]);
       residual.take(part.residual[e]);
     }
-    whole.measured = (whole.missed == 0 ? "all; " : "not all; ") + rounded(residual);
+    whole.measured = std::string(whole.all_or_not()) + "; " + rounded(residual);
     checks.push_back(whole);
   }
   return checks;
-}
-
-double steps_from(double value, int ulps) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  for (; ulps > 0; --ulps) value = std::nextafter(value, infinity);
-  for (; ulps < 0; ++ulps) value = std::nextafter(value, -infinity);
-  return value;
-}
-// Two neighbouring doubles between which `predicate`, false at `low` and true at `high`, turns.
-double last_bit(double low, double high, const std::function<bool(double)>& predicate) {
-  for (;;) {
-    const double middle = low + (high - low) / 2;
-    if (!(middle > std::min(low, high) && middle < std::max(low, high))) return high;
-    (predicate(middle) ? high : low) = middle;
-  }
 }
 
 // When the damper strikes first, or leaves its wall first.
@@ -152,7 +115,6 @@ Run watched(const Scene& scene, const Engine& engine) {
 // last bits before and after; on the same wall or on the other one.
 Check coincident(const Options& options) {
   Check check = about("2 to 10 impacts on one instant, to the last bit, and a few bits beside it", "all");
-  Worst residual, outside;
   for (int count = 2; count <= (options.brief ? 4 : 10); ++count) {
     for (const Engine& engine : both) {
       for (const bool opposite : {false, true}) {
@@ -179,7 +141,7 @@ Check coincident(const Options& options) {
           Scene near = scene;
           for (std::size_t i = 1; i < near.dampers.size(); ++i)
             near.dampers[i].y0 = steps_from(near.dampers[i].y0, i % 2 == 0 ? ulps : -ulps);
-          note(check, "case", near, engine, residual, outside);
+          keep_promises(check, "case", near, engine);
           const Run run = watched(near, engine);
           for (int i = 0; i < count; ++i) {
             const double off = std::abs(first_impact(run, i) - at);
@@ -190,14 +152,13 @@ Check coincident(const Options& options) {
       }
     }
   }
-  check.measured = check.missed == 0 ? "all" : "not all";
+  check.measured = check.all_or_not();
   return check;
 }
 
 // One mass leaves its wall as another meets its own, to the last bit.
 Check changing_together() {
   Check check = about("one leaves its wall as another meets its own, to the last bit, and beside it", "all");
-  Worst residual, outside;
   for (const Engine& engine : both) {
     for (const double k : {1e2, 1e4, 1e7}) {
       Scene scene;
@@ -215,7 +176,7 @@ Check changing_together() {
       for (int ulps = -16; ulps <= 16; ++ulps) {
         Scene near = alone;
         near.dampers[1].y0 = steps_from(near.dampers[1].y0, ulps);
-        note(check, "case", near, engine, residual, outside);
+        keep_promises(check, "case", near, engine);
         const Run run = watched(near, engine);
         if (!(std::abs(first_impact(run, 1) - at) <= 1e-13 &&
               std::abs(first_end_of_contact(run, 0) - at) <= 1e-13))
@@ -223,7 +184,7 @@ Check changing_together() {
       }
     }
   }
-  check.measured = check.missed == 0 ? "all" : "not all";
+  check.measured = check.all_or_not();
   return check;
 }
 
@@ -231,7 +192,6 @@ Check changing_together() {
 Check a_thousand(const Options& options) {
   Check check =
       about("a thousand dampers, clearances from 1e-3 to 1e3; another order of them, the same bits", "all");
-  Worst residual, outside;
   Scene scene;
   scene.x0 = 6, scene.until_time = options.brief ? 0.04 : 3;
   scene.dampers.clear();
@@ -244,13 +204,13 @@ Check a_thousand(const Options& options) {
   std::ranges::reverse(reversed.dampers);
   for (Engine engine : both) {
     std::visit([](auto& its) { its.budget.max_impacts = 2'000'000; }, engine);
-    note(check, "case", scene, engine, residual, outside);
+    keep_promises(check, "case", scene, engine);
     const Run one = watched(scene, engine), other = watched(reversed, engine);
     if (!(one.impacts->time == other.impacts->time &&
           one.half_cycles->amplitude == other.half_cycles->amplitude))
       check.miss("another order, another motion; " + std::string(name_of(engine)));
   }
-  check.measured = check.missed == 0 ? "all" : "not all";
+  check.measured = check.all_or_not();
   return check;
 }
 
@@ -259,7 +219,6 @@ Check a_thousand(const Options& options) {
 std::vector<Check> several_dampers(const Options& options) {
   std::vector<Check> checks = random_lists(options);
   if (options.seed) return checks;
-  const auto say = [](const char* what) { std::fprintf(stderr, "stress: %s\n", what); };
   say("dampers on one instant");
   checks.push_back(coincident(options));
   checks.push_back(changing_together());

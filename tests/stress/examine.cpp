@@ -1,10 +1,9 @@
-#include "examine.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "impact_damper/analysis/consistency.hpp"
+#include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
 #include "stress.hpp"
 
@@ -158,6 +157,39 @@ Examined examine(const Scene& scene, const Engine& engine) {
     broken(Promise::finite) = std::string("threw ") + error.what();
   }
   return result;
+}
+
+Examined keep_promises(Check& check, const std::string& which, const Scene& scene, const Engine& engine) {
+  ++check.cases;
+  const Examined examined = examine(scene, engine);
+  for (std::size_t p = 0; p < promises.size(); ++p)
+    if (!examined.broken[p].empty())
+      check.miss(which + " " + promises[p] + ": " + examined.broken[p] + "; " + in_full(scene, engine));
+  return examined;
+}
+
+std::string in_full(const Scene& scene) {
+  std::string text = scene_text(scene);
+  std::ranges::replace(text, '\n', ' ');
+  return text;
+}
+std::string in_full(const Scene& scene, const Engine& engine) {
+  return std::string(name_of(engine)) + "; " + in_full(scene);
+}
+
+double steps_from(double value, int ulps) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (; ulps > 0; --ulps) value = std::nextafter(value, infinity);
+  for (; ulps < 0; ++ulps) value = std::nextafter(value, -infinity);
+  return value;
+}
+
+double last_bit(double low, double high, const std::function<bool(double)>& predicate) {
+  for (;;) {
+    const double middle = low + (high - low) / 2;
+    if (!(middle > std::min(low, high) && middle < std::max(low, high))) return high;
+    (predicate(middle) ? high : low) = middle;
+  }
 }
 
 }  // namespace stress

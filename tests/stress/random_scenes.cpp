@@ -6,18 +6,16 @@
 // on the scene alone. With 100 times the stiffness the distance must therefore shrink to a tenth. That is
 // asked for wherever the first four impacts are no grazing ones, tau is short beside all else, and before
 // anything can grow: a missed impact, a false one, or another law of impact would not shrink at all.
-#include "random_scenes.hpp"
-
 #include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <mutex>
 
-#include "examine.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/simulate.hpp"
+#include "shared_scenes.hpp"
 #include "stress.hpp"
 
 namespace stress {
@@ -143,8 +141,7 @@ Case run(std::uint64_t seed) {
 std::string named(std::uint64_t seed, const char* engine, const std::string& what) {
   std::int64_t impacts = 0;
   const Scene scene = scene_of(seed, impacts);
-  return "--seed " + std::to_string(seed) + " " + engine + ": " + what + "; {" +
-         random_scenes::text_of(scene) + "}";
+  return "--seed " + std::to_string(seed) + " " + engine + ": " + what + "; " + in_full(scene);
 }
 
 // What a block of seeds adds to the whole; blocks are put together in order.
@@ -181,20 +178,14 @@ struct Tally {
     std::sort(slowest.rbegin(), slowest.rend());
     if (slowest.size() > 10) slowest.resize(10);
   }
-  static void put(Check& whole, const Check& part) {
-    whole.cases += part.cases;
-    whole.missed += part.missed;
-    for (const std::string& each : part.misses)
-      if (whole.misses.size() < Check::most_misses) whole.misses.push_back(each);
-  }
   void add(const Tally& part) {
     for (std::size_t e = 0; e < 2; ++e) {
       residual[e].take(part.residual[e]);
       outside[e].take(part.outside[e]);
       for (std::size_t i = 0; i < histogram[e].size(); ++i) histogram[e][i] += part.histogram[e][i];
-      for (std::size_t p = 0; p < promises.size(); ++p) put(checks[e][p], part.checks[e][p]);
+      for (std::size_t p = 0; p < promises.size(); ++p) checks[e][p].add(part.checks[e][p]);
     }
-    put(agreement, part.agreement);
+    agreement.add(part.agreement);
     least_ratio = std::min(least_ratio, part.least_ratio);
     most_ratio = std::max(most_ratio, part.most_ratio);
     distance.take(part.distance);
@@ -267,7 +258,7 @@ std::vector<Check> random_scenes_of_all_kinds(const Options& options) {
       Check check = whole.checks[e][p];
       check.subject = "random";
       check.what = std::string(engine_names[e]) + ": " + sentences[p];
-      check.measured = check.missed == 0 ? "all" : "not all";
+      check.measured = check.all_or_not();
       check.allowed = "all";
       if (p == std::size_t(Promise::between_walls)) {
         check.measured = rounded(whole.outside[e]) + " roundings";

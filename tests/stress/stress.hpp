@@ -1,16 +1,19 @@
-// The subjects of the stress program, one file each, and what they find: one line for each thing that was
-// tried, and every miss with what repeats it.
+// The subjects of the stress program, one file each, and what they share: one line for each thing that was
+// tried, with every miss and what repeats it; and what any scene promises, whatever the engine.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "impact_damper/analysis/parallel.hpp"
+#include "impact_damper/run.hpp"
 
 namespace stress {
 
@@ -27,6 +30,8 @@ struct Check {
     ++missed;
     if (misses.size() < most_misses) misses.push_back(what_and_how_to_repeat);
   }
+  void add(const Check& part);  // its cases and misses
+  const char* all_or_not() const { return missed == 0 ? "all" : "not all"; }
 };
 
 // The largest of many numbers, a NaN being larger than all.
@@ -46,10 +51,6 @@ class Worst {
 std::string rounded(double value, int digits = 2);
 std::string full(double value);  // 17 digits
 
-// Markdown: the table, then every miss. The same as JSON.
-std::string markdown(const std::vector<Check>& checks);
-std::string json(const std::vector<Check>& checks);
-
 // A line on standard error, at most one in two seconds; `done` of `all`.
 class Progress {
  public:
@@ -61,7 +62,46 @@ class Progress {
   double last_ = -1;
 };
 
-double seconds();  // of a steady clock: for progress only, no result holds a time
+void say(const std::string& what);  // a line on standard error
+double seconds();                   // of a steady clock: for progress only, no result holds a time
+
+// Each broken promise in words.
+enum class Promise {
+  finite,          // every number of the run
+  consistent,      // agrees with itself (consistency.hpp), impacts ascend, losses are not negative
+  bounded,         // ends by time or by the impacts that were granted; no impacts heaped on one instant
+  between_walls,   // 0 <= y <= 1 in flight, beyond the wall in contact
+  end_on_the_dot,  // a contact that the end of the run cuts ends with it
+  balance,         // closes
+};
+inline constexpr std::array<const char*, 6> promises{"finite",        "consistent",     "bounded",
+                                                     "between walls", "end on the dot", "energy balance"};
+
+struct Examined {
+  std::array<std::string, promises.size()> broken;  // by Promise; empty: kept
+  double outside = 0;   // farthest y beyond its side of a wall, by what rounding may do
+  double residual = 0;  // of the energy balance
+  bool all_kept() const;
+};
+
+// Runs the scene with everything recorded, sampled at times that crowd near the release.
+Examined examine(const impact_damper::Scene& scene, const impact_damper::Engine& engine);
+// The same; the check has one case more, and what is broken is a miss. `which`: what repeats it.
+Examined keep_promises(Check& check, const std::string& which, const impact_damper::Scene& scene,
+                       const impact_damper::Engine& engine);
+
+// On one line.
+std::string in_full(const impact_damper::Scene& scene);
+std::string in_full(const impact_damper::Scene& scene, const impact_damper::Engine& engine);
+
+inline constexpr double closed_balance = 1e-10;
+// A rounding is epsilon (1 + t) by the speeds and lengths that y is made of.
+inline constexpr double roundings_beyond_a_wall = 64;
+
+// The value so many last bits farther up, or down.
+double steps_from(double value, int ulps);
+// Two neighbouring doubles between which `predicate`, false at `low` and true at `high`, turns.
+double last_bit(double low, double high, const std::function<bool(double)>& predicate);
 
 struct Options {
   bool brief = false;                 // the same with smaller counts

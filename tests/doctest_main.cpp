@@ -1,6 +1,8 @@
+// doctest itself and its main function, compiled once for all tests.
+//
 // Every run that a test program makes, in its own code or through the library's, is held against itself: the
 // linker (--wrap, CMakeLists.txt) leads simulate()'s call of Recorder::finish(), by which a run is complete,
-// here. doctest and its main are compiled with it, once for all tests.
+// here.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
