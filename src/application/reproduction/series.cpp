@@ -84,28 +84,37 @@ std::string subtitle(const Figure& figure, const std::vector<const FigureRun*>& 
   return text;
 }
 
+// The name of the first number in which two scenes have another damper, damping or, unless they are rigid,
+// other walls; `varied` may differ. Absent if there is none.
+std::optional<std::string_view> difference(const Scene& a, const Scene& b, const Engine& engine,
+                                           std::optional<Varied> varied) {
+  for (const Varied same : {Varied::mass_ratio, Varied::restitution, Varied::damping_ratio})
+    if (varied != same && of(a, same) != of(b, same)) return name_of(same);
+  if (!has_rigid_walls(engine) && a.damper().wall_stiffness != b.damper().wall_stiffness)
+    return "wall_stiffness";
+  return std::nullopt;
+}
+
 void check_comparable(const Figure& figure, const std::vector<const FigureRun*>& runs) {
   for (const FigureRun* other : runs) {
-    if (name_of(other->run.engine) != name_of(runs[0]->run.engine)) {
+    const Engine& engine = runs[0]->run.engine;
+    if (name_of(other->run.engine) != name_of(engine))
       throw unusable(figure, other->file, "comes from another engine than " + runs[0]->file.string());
-    }
-    for (const Varied same : {Varied::mass_ratio, Varied::restitution, Varied::damping_ratio}) {
-      if (figure.varied != same && of(other->run.scene, same) != of(runs[0]->run.scene, same)) {
-        throw unusable(figure, other->file,
-                       "must have the same " + std::string(name_of(same)) + " as " + runs[0]->file.string());
-      }
-    }
+    if (const auto number = difference(other->run.scene, runs[0]->run.scene, engine, figure.varied))
+      throw unusable(figure, other->file,
+                     "must have the same " + std::string(*number) + " as " + runs[0]->file.string());
   }
 }
 
-// Throws unusable() unless all have the scene's mass ratio, restitution and damping ratio; forces may differ.
+// Throws unusable() unless all have the scene's damper, damping and walls; forces may differ.
 void check_comparable(const Figure& figure, const std::vector<const FigureResponse*>& sources,
                       const Scene& scene) {
-  for (const FigureResponse* source : sources)
-    for (const Varied same : {Varied::mass_ratio, Varied::restitution, Varied::damping_ratio})
-      if (of(scene_of(source->response), same) != of(scene, same))
-        throw unusable(figure, source->file,
-                       "must have the same " + std::string(name_of(same)) + " as the figure's others");
+  for (const FigureResponse* source : sources) {
+    const auto engine = std::visit([](const auto& each) { return each.engine; }, source->response);
+    if (const auto number = difference(scene_of(source->response), scene, engine, std::nullopt))
+      throw unusable(figure, source->file,
+                     "must have the same " + std::string(*number) + " as the figure's others");
+  }
 }
 
 // Returns the request of a response without its scene, as text.
