@@ -8,7 +8,7 @@
 #include "application/sweeps/lightest_design.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/file_output.hpp"
-#include "impact_damper/io/json_writer.hpp"
+#include "impact_damper/io/json_parts.hpp"
 #include "output.hpp"
 #include "progress.hpp"
 #include "scene_arguments.hpp"

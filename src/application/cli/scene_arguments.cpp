@@ -5,9 +5,9 @@
 #include <iostream>
 #include <sstream>
 
-#include "impact_damper/analysis/cautions.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/engine_options.hpp"
+#include "impact_damper/units.hpp"
 
 namespace impact_damper::cli {
 namespace {

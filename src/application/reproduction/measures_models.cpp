@@ -15,7 +15,7 @@ namespace impact_damper {
 namespace {
 
 // Returns the time of the peak of the first half cycle below `amplitude`. NaN if there is none.
-double time_below(const Run& run, double amplitude) {
+double peak_time_below(const Run& run, double amplitude) {
   const auto row = first_row_below(half_cycles_of(run), amplitude);
   return row ? run.half_cycles->peak_time[*row] : std::nan("");
 }
@@ -30,16 +30,16 @@ Spread over_pairs(Runs& runs, const MeasureCall& call, Find find) {
 Spread time_saved(Runs& runs, const MeasureCall& call) {
   const double amplitude = number(call, "amplitude");
   std::vector<double> theirs;
-  for (const Run& run : runs.ensemble(call.scenes.back())) theirs.push_back(time_below(run, amplitude));
+  for (const Run& run : runs.ensemble(call.scenes.back())) theirs.push_back(peak_time_below(run, amplitude));
   const double reference = spread_of(theirs).median;
-  return over_members(runs, call,
-                      [&](const Run& run) { return 100 * (1 - time_below(run, amplitude) / reference); });
+  return over_members(
+      runs, call, [&](const Run& run) { return 100 * (1 - peak_time_below(run, amplitude) / reference); });
 }
 
 Spread time_ratio(Runs& runs, const MeasureCall& call) {
   const double amplitude = number(call, "amplitude");
   return over_pairs(runs, call, [&](const Run& ours, const Run& theirs) {
-    return time_below(ours, amplitude) / time_below(theirs, amplitude);
+    return peak_time_below(ours, amplitude) / peak_time_below(theirs, amplitude);
   });
 }
 

@@ -16,6 +16,9 @@
 
 namespace impact_damper {
 
+class ObjectReader;  // json_reader.hpp
+class JsonWriter;    // json_writer.hpp
+
 inline constexpr std::string_view plan_schema = "impact-damper/plan/1";
 inline constexpr FileKind plan_kind{"plan", 1 << 20};
 

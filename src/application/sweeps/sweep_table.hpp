@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "application/sweeps/plan.hpp"
-#include "impact_damper/io/file_kind.hpp"
+#include "impact_damper/base/text.hpp"
 
 namespace impact_damper {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "impact_damper/base/expected.hpp"
+#include "impact_damper/base/errors.hpp"
 #include "impact_damper/engine.hpp"
 #include "impact_damper/orbits/orbit_impact.hpp"
 #include "impact_damper/orbits/saltation.hpp"
