@@ -347,8 +347,12 @@ TEST_CASE("curves of one figure must differ in what it varies and in nothing els
   runs["two"].run.scene.damper().restitution = 0.5;
   CHECK(rejection(figure, runs).find("same restitution") != std::string::npos);
   runs["two"].run.scene.damper().restitution = 0.6;
+  runs["two"].run.scene.damper().wall_stiffness = 5e3;
+  CHECK(rejection(figure, runs).find("same wall_stiffness") != std::string::npos);
   runs["two"].run.engine = Restitution{};
   CHECK(rejection(figure, runs).find("another engine") != std::string::npos);
+  runs["one"].run.engine = Restitution{};  // rigid walls: their stiffness changes nothing
+  CHECK_NOTHROW(figure_table(figure, runs));
 }
 
 TEST_CASE("a table's text heads its blocks as gnuplot finds them, and interrupts lines at gaps") {
@@ -809,6 +813,10 @@ TEST_CASE("a table of responses has the sweeps' motions, the branches' pieces an
   figure.responses = {"a", "c"};
   CHECK_THROWS_WITH_AS(figure_table(figure, {}, {{"a", {"a.json", sweep}}, {"c", {"c.json", other}}}),
                        doctest::Contains("c.json: must have the same restitution"), InputError);
+  other.scene = sweep.scene;
+  other.scene.damper().wall_stiffness = 5e3;
+  CHECK_THROWS_WITH_AS(figure_table(figure, {}, {{"a", {"a.json", sweep}}, {"c", {"c.json", other}}}),
+                       doctest::Contains("c.json: must have the same wall_stiffness"), InputError);
 }
 
 TEST_CASE("at resonance without damping a linear oscillator's curve is interrupted") {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <string>
 
-#include "impact_damper/analysis/cautions.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
 

@@ -121,7 +121,7 @@ std::unique_ptr<impact_damper_run> run_of(const char* scene, const char* engine,
   return result;
 }
 
-void tell(const char* problem, char* error, std::size_t error_size) {
+void copy_message(const char* problem, char* error, std::size_t error_size) {
   if (error_size == 0) return;
   const std::string_view text = std::string_view(problem).substr(0, error_size - 1);
   *std::copy(text.begin(), text.end(), error) = '\0';
@@ -149,13 +149,13 @@ impact_damper_status impact_damper_simulate_recording(const char* scene, const c
     *run = impact_damper::run_of(scene, engine, record, history).release();
     return IMPACT_DAMPER_DONE;
   } catch (const impact_damper::NumericalError& problem) {
-    impact_damper::tell(problem.what(), error, error_size);
+    impact_damper::copy_message(problem.what(), error, error_size);
     return IMPACT_DAMPER_NUMERICAL_FAILURE;
   } catch (const std::bad_alloc&) {
-    impact_damper::tell("there is not enough memory for the run", error, error_size);
+    impact_damper::copy_message("there is not enough memory for the run", error, error_size);
     return IMPACT_DAMPER_OUT_OF_MEMORY;
   } catch (const std::exception& problem) {
-    impact_damper::tell(problem.what(), error, error_size);
+    impact_damper::copy_message(problem.what(), error, error_size);
     return IMPACT_DAMPER_INVALID;
   }
 }

@@ -1,5 +1,5 @@
 // Maps of what points end in, against each point followed by itself.
-#include "impact_damper/steady/basin.hpp"
+#include "impact_damper/steady/sweep.hpp"
 
 #include <doctest/doctest.h>
 

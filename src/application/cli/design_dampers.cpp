@@ -4,7 +4,7 @@
 
 #include "application/sweeps/damper_set_design.hpp"
 #include "application/sweeps/lightest_design.hpp"
-#include "impact_damper/io/json_writer.hpp"
+#include "impact_damper/io/json_parts.hpp"
 #include "scene_arguments.hpp"
 
 namespace impact_damper::cli {

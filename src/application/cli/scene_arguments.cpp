@@ -5,8 +5,8 @@
 #include <iostream>
 #include <sstream>
 
-#include "impact_damper/analysis/cautions.hpp"
 #include "impact_damper/engine_options.hpp"
+#include "impact_damper/units.hpp"
 
 namespace impact_damper::cli {
 namespace {

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "impact_damper/base/enumeration.hpp"
-#include "impact_damper/io/file_kind.hpp"
+#include "impact_damper/base/text.hpp"
 
 namespace impact_damper {
 

@@ -5,8 +5,6 @@
 #include <iterator>
 #include <numbers>
 
-#include "impact_damper/analysis/one_of_several.hpp"
-#include "impact_damper/analysis/time_below.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/simulate.hpp"
 

@@ -7,8 +7,8 @@
 
 #include "application/report/page.hpp"
 #include "application/report/quantities.hpp"
-#include "impact_damper/analysis/cautions.hpp"
 #include "impact_damper/io/scene_file.hpp"
+#include "impact_damper/units.hpp"
 
 namespace impact_damper {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "application/reproduction/scene_runs.hpp"
 #include "impact_damper/base/number_text.hpp"
+#include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/json_reader.hpp"
-#include "impact_damper/io/run_file.hpp"
 #include "impact_damper/responses/response_fields.hpp"
 
 namespace impact_damper {

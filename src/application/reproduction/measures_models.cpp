@@ -18,7 +18,7 @@ namespace impact_damper {
 namespace {
 
 // Returns the time of the peak of the first half cycle below `amplitude`. NaN if there is none.
-double time_below(const Run& run, double amplitude) {
+double peak_time_below(const Run& run, double amplitude) {
   const auto row = first_row_below(half_cycles_of(run), amplitude);
   return row ? run.half_cycles->peak_time[*row] : std::nan("");
 }
@@ -27,15 +27,15 @@ Spread time_saved(const Asked& asked) {
   const double amplitude = asked.number("amplitude");
   std::vector<double> theirs, saved;
   for (const Run& run : asked.runs.ensemble(asked.call.scenes.back()))
-    theirs.push_back(time_below(run, amplitude));
+    theirs.push_back(peak_time_below(run, amplitude));
   const double reference = spread_of(theirs).median;
-  for (const Run& run : asked.ensemble()) saved.push_back(100 * (1 - time_below(run, amplitude) / reference));
+  for (const Run& run : asked.ensemble()) saved.push_back(100 * (1 - peak_time_below(run, amplitude) / reference));
   return spread_of(saved);
 }
 
 double time_ratio(const Asked& asked, const Run& ours, const Run& theirs) {
   const double amplitude = asked.number("amplitude");
-  return time_below(ours, amplitude) / time_below(theirs, amplitude);
+  return peak_time_below(ours, amplitude) / peak_time_below(theirs, amplitude);
 }
 
 // Returns the share of the half cycles with an amplitude in [from, to] that belong to no regular window.

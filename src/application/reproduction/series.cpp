@@ -80,12 +80,17 @@ std::string subtitle(const Figure& figure, const std::vector<const FigureRun*>& 
   return text;
 }
 
-// Throws unusable() unless the scene has the ratios of `wanted`, but for the one that the figure varies.
+// Throws unusable() unless the scene has the ratios of `wanted`, but for the one that the figure varies, and
+// its walls, if they are not rigid.
 void require_same_ratios(const Figure& figure, const std::filesystem::path& file, const Scene& scene,
-                         const Scene& wanted, const std::string& whose) {
+                         const Scene& wanted, const Engine& engine, const std::string& whose) {
+  const auto reject = [&](std::string_view number) {
+    throw unusable(figure, file, "must have the same " + std::string(number) + " as " + whose);
+  };
   for (const Varied same : ratios)
-    if (figure.varied != same && of(scene, same) != of(wanted, same))
-      throw unusable(figure, file, "must have the same " + std::string(name_of(same)) + " as " + whose);
+    if (figure.varied != same && of(scene, same) != of(wanted, same)) reject(name_of(same));
+  if (!has_rigid_walls(engine) && scene.damper().wall_stiffness != wanted.damper().wall_stiffness)
+    reject("wall_stiffness");
 }
 
 void check_comparable(const Figure& figure, const std::vector<const FigureRun*>& runs) {
@@ -93,7 +98,8 @@ void check_comparable(const Figure& figure, const std::vector<const FigureRun*>&
     const std::string first = runs[0]->file.string();
     if (name_of(other->run.engine) != name_of(runs[0]->run.engine))
       throw unusable(figure, other->file, "comes from another engine than " + first);
-    require_same_ratios(figure, other->file, other->run.scene, runs[0]->run.scene, first);
+    require_same_ratios(figure, other->file, other->run.scene, runs[0]->run.scene, runs[0]->run.engine,
+                        first);
   }
 }
 
@@ -153,7 +159,9 @@ Table table_of(const Figure& figure, const std::vector<const FigureRun*>& source
   const Scene& scene = sources.empty() ? scene_of(found.at(0)->response) : sources[0]->run.scene;
   check_comparable(figure, sources);
   for (const FigureResponse* source : found)  // forces may differ
-    require_same_ratios(figure, source->file, scene_of(source->response), scene, "the figure's others");
+    const Engine& engine =
+        std::visit([](const auto& each) -> const Engine& { return each.engine; }, source->response);
+  require_same_ratios(figure, source->file, scene_of(source->response), scene, engine, "the figure's others");
 
   Table table{header_of(figure, subtitle(figure, sources, scene)), {}};
   for (const std::string& name : scenes_of(figure)) {

@@ -6,7 +6,7 @@
 
 #include "impact_damper/analysis/design.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
-#include "impact_damper/analysis/time_below.hpp"
+#include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/text.hpp"
 #include "impact_damper/motion/wall.hpp"

@@ -338,7 +338,7 @@ Plan read_fields(ObjectReader& object, const std::filesystem::path& folder, cons
   object.optional("description", plan.description);
   plan.scene = read_scene_of(object, folder, find);
   if (auto engine = object.optional_object("engine"))
-    if (const auto read = read_engine_of_plan(*engine)) plan.engine = *read;
+    if (const auto read = read_engine(*engine, Lacking::any_or_null)) plan.engine = *read;
   const std::vector<Variable> variables = variables_of(plan.scene);
   plan.grid = read_grid(object, variables);
   if (auto samples = object.optional_object("samples")) plan.samples = read_samples(*samples, variables);

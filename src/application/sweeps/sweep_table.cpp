@@ -323,9 +323,7 @@ SweepDescription read_sweep_description(const fs::path& table) {
   if (is_hdf5(table))
     reject(table, "must be a table as CSV: make it again, or merge its parts, with -o " +
                       fs::path(table).replace_extension(".csv").string());
-  const fs::path file = description_of(table);
-  const std::string text = read_text(file, sweep_kind);
-  JsonDocument document = JsonDocument::parse(file.string(), text);
+  SealedDocument document = SealedDocument::read(description_of(table), sweep_kind);
   ObjectReader root = document.root();
   if (root.require("schema")) root.word("schema", {table_schema});
   SweepDescription description;
@@ -340,7 +338,7 @@ SweepDescription read_sweep_description(const fs::path& table) {
   if (root.all_valid() && description.rows != runs_of(description.plan))
     holds.reject("rows", "must be the " + std::to_string(runs_of(description.plan)) + " of the plan, got " +
                              std::to_string(description.rows));
-  finish_sealed(document, root, is_sealed(text));
+  document.finish(root);
   return description;
 }
 

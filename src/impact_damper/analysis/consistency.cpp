@@ -57,6 +57,9 @@ class Examination {
   static std::string got(const std::string& wanted, double given) {
     return "must be " + wanted + ", got " + number_text(given);
   }
+  static std::string got(const std::string& wanted, std::int64_t given) {
+    return "must be " + wanted + ", got " + std::to_string(given);
+  }
   bool equal(const std::string& field, double wanted, double given, double tolerance, const std::string& of) {
     return require(std::abs(given - wanted) <= tolerance, field, got(number_text(wanted) + of, given));
   }
@@ -99,13 +102,11 @@ class Examination {
   void examine_end() {
     const double end = run_.end_time;
     const std::string field = "/end_time";
-    if (scene_.until_time) {
-      require(end <= *scene_.until_time, field,
-              got("<= until_time, " + number_text(*scene_.until_time), end));
-    }
-    if (budget_.max_time) {
-      require(end <= *budget_.max_time, field, got("<= max_time, " + number_text(*budget_.max_time), end));
-    }
+    const auto at_most = [&](const std::optional<double>& limit, const std::string& name) {
+      if (limit) require(end <= *limit, field, got("<= " + name + ", " + number_text(*limit), end));
+    };
+    at_most(scene_.until_time, "until_time");
+    at_most(budget_.max_time, "max_time");
     const auto ends_at = [&](const double* wanted, const std::string& what) {
       const std::string reason = "\"" + std::string(name_of(run_.stop_reason)) + "\"";
       if (!require(wanted != nullptr, "/stop_reason",
@@ -204,8 +205,7 @@ class Examination {
       std::int64_t sum = 0;
       for (const HalfCycles::Damper& its : rows.dampers) sum += its.impacts[row];
       if (!require(sum == rows.impacts[row], "/half_cycles/impacts", row,
-                   "must be the sum over all dampers, " + std::to_string(sum) + ", got " +
-                       std::to_string(rows.impacts[row])))
+                   got("the sum over all dampers, " + std::to_string(sum), rows.impacts[row])))
         break;
     }
   }
@@ -280,9 +280,9 @@ class Examination {
       }
       for (std::size_t damper = 0; several_ && damper < rows.dampers.size(); ++damper) {
         const std::int64_t given = rows.dampers[damper].impacts[row];
-        if (!require(given == by_damper[damper], of_damper("/half_cycles/", damper) + "impacts", row,
-                     "must be the number of its impacts in the row, " + std::to_string(by_damper[damper]) +
-                         ", got " + std::to_string(given)))
+        if (!require(
+                given == by_damper[damper], of_damper("/half_cycles/", damper) + "impacts", row,
+                got("the number of its impacts in the row, " + std::to_string(by_damper[damper]), given)))
           return;
       }
     }
@@ -400,8 +400,8 @@ class Examination {
       zeros_are_bounded = fastest <= bound;
       fastest = bound;
     }
-    std::size_t row = 0;        // of the sample
-    bool side_is_told = false;  // whether last_x is set: x of the last sample with a certain sign
+    std::size_t row = 0;         // of the sample
+    bool side_is_known = false;  // whether last_x is set: x of the last sample with a certain sign
     double last_time = 0, last_x = 0, largest = 0;
     bool signs_hold = true, heights_hold = true, zeros_hold = true;
     for (std::size_t i = 0; i < history.time.size(); ++i) {
@@ -425,14 +425,14 @@ class Examination {
                         x));
       }
       if (at_next || at_last || std::abs(x) <= near * size + blur(time, largest)) continue;
-      if (side_is_told && x * last_x < 0 && signs_hold) {
+      if (side_is_known && x * last_x < 0 && signs_hold) {
         const auto first = std::ranges::lower_bound(crossings, last_time - instant(last_time));
         signs_hold = require(first != crossings.end() && *first <= time + near, "/history/x", i,
                              got("of the same sign as " + number_text(last_x) + " at " +
                                      number_text(last_time) + ", as there is no zero crossing between",
                                  x));
       }
-      side_is_told = true;
+      side_is_known = true;
       last_time = time;
       last_x = x;
     }
@@ -459,7 +459,7 @@ class Examination {
     if (is_rigid()) equal("/energy/contact_loss", 0, balance.contact_loss, 0, ": rigid walls take no energy");
     if (!is_rigid() || balance.bounce_downs == 0) {
       require(balance.bounce_downs == 0, "/energy/bounce_downs",
-              "must be 0 with compliant walls, got " + std::to_string(balance.bounce_downs));
+              got("0 with compliant walls", balance.bounce_downs));
       equal("/energy/bounce_down_loss", 0, balance.bounce_down_loss, 0,
             ": there was no bounce-down to jump over");
     }
@@ -560,7 +560,7 @@ class Examination {
     equal("/energy/bounce_down_loss", bounce_down_loss, balance.bounce_down_loss,
           rounding * (1 + static_cast<double>(bounce_downs) / 64) * bounce_down_loss, of);
     require(bounce_downs == balance.bounce_downs, "/energy/bounce_downs",
-            "must be " + std::to_string(bounce_downs) + of + ", got " + std::to_string(balance.bounce_downs));
+            got(std::to_string(bounce_downs) + of, balance.bounce_downs));
   }
 
   // Compares the recorded residual with the one of the recorded terms. Its divisor, the initial energy plus

@@ -143,36 +143,27 @@ LossFactor loss_before_failure(const Run& run) {
 }
 
 std::vector<double> ordinate(const LossFactor& loss, const Scene& scene, LossOrdinate which) {
-  std::vector<double> column;
-  column.reserve(loss.eta.size());
-  for (std::size_t i = 0; i < loss.eta.size(); ++i) {
-    const double specific =
-        specific_secondary_loss(loss.eta[i], scene.damping_ratio, scene.damper().mass_ratio);
-    const double product = amplitude_times_loss(loss.amplitude[i], specific);
-    double y = 0;
+  const double nu = scene.damper().mass_ratio, e = scene.damper().restitution, zeta = scene.damping_ratio;
+  const auto value = [&](double amplitude, double eta) {
+    const double specific = (eta - 2 * zeta) / nu;
     switch (which) {
       case LossOrdinate::eta:
-        y = loss.eta[i];
-        break;
+        return eta;
       case LossOrdinate::specific:
-        y = specific_loss(loss.eta[i], scene.damper().mass_ratio);
-        break;
+        return eta / nu;
       case LossOrdinate::specific_secondary:
-        y = specific;
-        break;
+        return specific;
       case LossOrdinate::amplitude_times:
-        y = product;
-        break;
+        return amplitude * specific;
       case LossOrdinate::by_restitution:
-        y = loss_by_restitution(product, scene.damper().restitution);
-        break;
+        return amplitude * specific / (1 - e);
       case LossOrdinate::carried:
-        y = amplitude_times_loss(loss.amplitude[i], specific_carried_loss(loss.eta[i], scene.damping_ratio,
-                                                                          scene.damper().mass_ratio));
-        break;
+        return amplitude * ((eta - 2 * zeta / (1 + nu)) / nu);
     }
-    column.push_back(y);
-  }
+    return 0.0;
+  };
+  std::vector<double> column(loss.eta.size());
+  for (std::size_t i = 0; i < column.size(); ++i) column[i] = value(loss.amplitude[i], loss.eta[i]);
   return column;
 }
 

@@ -1,6 +1,7 @@
 // Readers and writers of objects that several kinds of files have as fields.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -8,7 +9,7 @@
 #include "impact_damper/engine.hpp"
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/json_writer.hpp"
-#include "impact_damper/units.hpp"
+#include "impact_damper/io/scene_file.hpp"
 
 namespace impact_damper {
 
@@ -19,12 +20,13 @@ void write_units(JsonWriter& out, const Scales& scales);
 // Writes "provenance", the last field, without its end, which sealed() adds.
 void write_provenance(JsonWriter& out);
 
-// Reads the engine of a response: every option must be there, null where it follows from each of the runs of
-// the response. Absent if there are problems.
-std::optional<Engine> read_engine_of_response(ObjectReader& engine);
-// Reads the engine of a plan: only its name must be there, and null counts as a missing option. Absent if
-// there are problems.
-std::optional<Engine> read_engine_of_plan(ObjectReader& engine);
+// Whether an engine may lack an option, which then keeps its default. A run file must have all of them. A
+// response file has null for what follows from each of its runs. Elsewhere any may be missing. In a plan any
+// that follows from the scene may also be null, as in the file beside a sweep's table.
+enum class Lacking { nothing, null, any, any_or_null };
+// Reads an engine; absent if any of it is not valid.
+std::optional<Engine> read_engine(ObjectReader& object, Lacking lacking = Lacking::any);
+
 // Reads the numbers of a scene by calling read(object, field, number, name), by the name that the number has
 // in a Problem, for each of `fields` or, if there is a list of dampers, for those of the scene itself and
 // those of `damper_fields` for each damper. A list that cannot be read leaves a scene without dampers.
@@ -47,12 +49,32 @@ void read_numbers(ObjectReader& object, AnyScene& scene, const Fields& fields,
         read(damper, field, its.*field.number.of_damper, damper_field(scene.dampers.size() - 1, field.name));
   }
 }
+
+// Reads the fields of a scene from an object, which may hold others. Returns a scene without dampers if their
+// list cannot be read. Where a run is read, every field must be there, absent stops as null.
+enum class MissingFields { have_defaults, are_problems };
+Scene read_scene_fields(ObjectReader& object, MissingFields missing = MissingFields::have_defaults);
+// Reads a whole scene, dimensionless or in units. If there are problems, the result must not be used.
+SceneFile read_scene_object(ObjectReader& object);
+// Write the fields of a scene: all, those without the stops, and those that are given of a scene in units.
+void write_scene_fields(JsonWriter& out, const Scene& scene);
+void write_scene_numbers(JsonWriter& out, const Scene& scene);
+void write_unit_fields(JsonWriter& out, const SceneInUnits& scene);
+
 // Checks "units", if there: six numbers of three scales, which must agree.
 void check_units(ObjectReader& root);
-// Whether a text ends with the digest of what precedes it (run_file.hpp).
-bool is_sealed(std::string_view text);
-// Reads "provenance", then throws InputError if anything of the document was wrong, or if it is not `sealed`:
-// its digest is then a problem, too.
-void finish_sealed(JsonDocument& document, ObjectReader& root, bool sealed);
+
+// A document, and whether its text ends with the digest of what precedes it (run_file.hpp).
+struct SealedDocument {
+  JsonDocument document;
+  bool sealed;
+
+  static SealedDocument read(const std::filesystem::path& file, const FileKind& kind);
+  static SealedDocument parse(const std::string& name, const std::string& text);
+  ObjectReader root() { return document.root(); }
+  // Reads "provenance", then throws InputError if anything of the document was wrong, or if it is not sealed:
+  // its digest is then a problem, too.
+  void finish(ObjectReader& root) const;
+};
 
 }  // namespace impact_damper

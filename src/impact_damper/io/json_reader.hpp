@@ -12,7 +12,7 @@
 //   document.finish();  // throws InputError with what was wrong, unknown keys included
 //
 // A file, text or array that is too long is rejected before it takes memory: the file by its kind, a text and
-// an array by the rule they are read with, all of a file together by the parser (json_parser.hpp).
+// an array by the rule they are read with, all of a file together by the parser.
 //
 // A field that cannot be read leaves its target as it was, so reading can go on to the next problem:
 // do not act on what was read before finish() has returned.
@@ -26,12 +26,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/text.hpp"
-#include "impact_damper/io/file_kind.hpp"
 
 namespace impact_damper {
 
@@ -52,6 +52,10 @@ struct TextRule {
 inline constexpr TextRule some_text{1};
 inline constexpr TextRule a_name{1, 64, true};  // of a scene, a claim, a file
 
+// The rule by which a value, or each element of an array, is read; flags need none.
+template <class Value>
+using RuleFor = std::conditional_t<std::is_same_v<Value, std::string>, TextRule, NumberRange>;
+
 class JsonProblems;  // what a document collects while it is read
 
 // One object of a document; a handle, valid as long as the document. Asking for a key makes it known:
@@ -59,17 +63,15 @@ class JsonProblems;  // what a document collects while it is read
 // as empty and reports nothing further.
 class ObjectReader {
  public:
-  // Reads the field `key` into `target`, which keeps its default if the key is missing. Integers are
-  // JSON integers: neither 3.0 nor 3e0. Every element of an array obeys `range`. Where the target is
-  // optional, null means absent. False if there is a value and it is not valid.
-  bool optional(std::string_view key, double& target, NumberRange range = {});
-  bool optional(std::string_view key, std::int64_t& target, NumberRange range = {});
-  bool optional(std::string_view key, std::optional<double>& target, NumberRange range = {});
-  bool optional(std::string_view key, bool& target);
-  bool optional(std::string_view key, std::string& target, TextRule rule = {});
-  bool optional(std::string_view key, std::vector<double>& target, NumberRange range = {});
-  bool optional(std::string_view key, std::vector<std::int64_t>& target, NumberRange range = {});
-  bool optional(std::string_view key, std::vector<std::optional<double>>& target, NumberRange range = {});
+  // Reads the field `key` into `target`, which keeps its default if the key is missing: a double, an optional
+  // one, for which null means absent, a std::int64_t, which is a JSON integer, neither 3.0 nor 3e0, a bool, a
+  // std::string, or an array of one of these, except flags, each of which obeys the rule. False if there is a
+  // value and it is not valid.
+  template <class Target>
+  requires(!Enumeration<Target>) bool optional(std::string_view key, Target& target,
+                                               RuleFor<Target> rule = {});
+  template <class Element>
+  bool optional(std::string_view key, std::vector<Element>& target, RuleFor<Element> rule = {});
   // Reads at most `most` texts, no two of them equal.
   bool optional(std::string_view key, std::vector<std::string>& target, TextRule rule, std::size_t most);
 
@@ -132,8 +134,6 @@ class ObjectReader {
   const nlohmann::json* find(std::string_view key);
   std::string pointer_to(std::string_view key) const;
   bool wrong(std::string_view key, const std::string& wanted, const nlohmann::json& given);
-  template <typename Element, typename Rule>
-  bool array(std::string_view key, std::vector<Element>& target, const Rule& rule);
   bool too_long(std::string_view key, std::size_t most, const nlohmann::json& array);
 
   JsonProblems* problems_;

@@ -115,11 +115,6 @@ class SectionReader {
   std::vector<std::string_view> invalid_;
 };
 
-// Whether an engine may lack an option, which then keeps its default. A run file must have all of them. A
-// response file has null for what follows from each of its runs. Elsewhere any may be missing. In a plan any
-// that follows from the scene may also be null, as in the file beside a sweep's table.
-enum class Lacking { nothing, null, any, any_or_null };
-
 // Reads an option. False, after reporting it, unless the value is allowed, or none is there and none is
 // needed.
 template <class Value>
@@ -128,40 +123,20 @@ bool read_option(ObjectReader& object, const OptionInfo& option, Lacking lacking
       lacking == Lacking::any || lacking == Lacking::any_or_null || !option.in_every_file;
   if (may_be_missing && !object.has(option.name)) return true;
   if constexpr (std::is_enum_v<Value>) {
-    if (!object.require(option.name)) return false;
-    const std::optional<std::size_t> index = object.word(option.name, words_of<Value>());
-    if (index) value = all_of<Value>.begin()[*index];
-    return index.has_value();
-  } else if constexpr (std::is_same_v<Value, bool>) {
-    return object.required(option.name, value);
-  } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
-    if (lacking == Lacking::any_or_null) return object.optional(option.name, value, option.range);
-    if (lacking == Lacking::null && option.in_every_file)
-      return object.required(option.name, value, option.range);
-    double number = 0;  // null is no number
-    if (!object.required(option.name, number, option.range)) return false;
-    value = number;
-    return true;
+    return object.required(option.name, value, all_of<Value>);
   } else {
+    if constexpr (std::is_same_v<Value, std::optional<double>>) {
+      const bool may_be_null =
+          lacking == Lacking::any_or_null || (lacking == Lacking::null && option.in_every_file);
+      if (!may_be_null) {
+        double number = 0;
+        if (!object.required(option.name, number, option.range)) return false;
+        value = number;
+        return true;
+      }
+    }
     return object.required(option.name, value, option.range);
   }
-}
-
-// Reads an engine; absent if any of it is not valid.
-std::optional<Engine> read_engine(ObjectReader& object, Lacking lacking) {
-  if (!object.require("name")) return std::nullopt;
-  const std::optional<std::size_t> name = object.word("name", engine_names());
-  if (!name) {
-    object.keys();  // which of them are known depends on the name
-    return std::nullopt;
-  }
-  Engine engine = default_engines()[*name];
-  bool all_read = true;
-  for_each_option(engine, [&](const OptionInfo& option, auto& value) {
-    all_read = read_option(object, option, lacking, value) && all_read;
-  });
-  if (!all_read) return std::nullopt;
-  return engine;
 }
 
 // Reads a section, if it is there.
@@ -194,15 +169,24 @@ void check_together(ObjectReader& scene, ObjectReader& engine, const Run& run) {
   }
 }
 
-Run read_whole(JsonDocument document, bool sealed) {
+bool is_sealed(std::string_view text) {
+  constexpr std::size_t digits = 64, length = seal_begin.size() + digits + seal_end.size();
+  if (text.size() < length) return false;
+  const std::string_view seal = text.substr(text.size() - length),
+                         digest = seal.substr(seal_begin.size(), digits);
+  return seal.starts_with(seal_begin) && seal.ends_with(seal_end) &&
+         digest == sha256(text.substr(0, text.size() - length));
+}
+
+Run read_whole(SealedDocument file) {
   Run run;
-  ObjectReader object = document.root();
+  ObjectReader object = file.root();
   if (object.require("schema")) object.word("schema", {run_schema});
   ObjectReader scene = object.required_object("scene"), engine = object.required_object("engine");
   run.scene = read_scene_fields(scene, MissingFields::are_problems);
   if (run.scene.dampers.empty()) {
     for (ObjectReader* each : {&object, &engine}) each->keys();  // the columns would be of unknown dampers
-    document.finish();
+    file.document.finish();
   }
   // Files of earlier versions list one damper as they list several.
   const std::size_t dampers = scene.holds("dampers") ? run.scene.dampers.size() : 0;
@@ -220,29 +204,32 @@ Run read_whole(JsonDocument document, bool sealed) {
     object.reject("energy", "must hold a loss for each of the " + std::to_string(run.impacts->time.size()) +
                                 " impacts, got " + std::to_string(run.energy->impact_loss.size()));
   }
-  finish_sealed(document, object, sealed);
+  file.finish(object);
   return run;
 }
 
 }  // namespace
 
-Run read_run(const std::filesystem::path& file) {
-  std::string text = read_text(file, run_kind);
-  const bool sealed = is_sealed(text);
-  JsonDocument document = JsonDocument::parse(file.string(), text);
-  std::string().swap(text);  // its memory is as large as that of the columns
-  return read_whole(std::move(document), sealed);
-}
+Run read_run(const std::filesystem::path& file) { return read_whole(SealedDocument::read(file, run_kind)); }
 
 Run parse_run(const std::string& name, const std::string& text) {
-  return read_whole(JsonDocument::parse(name, text), is_sealed(text));
+  return read_whole(SealedDocument::parse(name, text));
 }
 
-std::optional<Engine> read_engine_of_response(ObjectReader& engine) {
-  return read_engine(engine, Lacking::null);
-}
-std::optional<Engine> read_engine_of_plan(ObjectReader& engine) {
-  return read_engine(engine, Lacking::any_or_null);
+std::optional<Engine> read_engine(ObjectReader& object, Lacking lacking) {
+  if (!object.require("name")) return std::nullopt;
+  const std::optional<std::size_t> name = object.word("name", engine_names());
+  if (!name) {
+    object.keys();  // which of them are known depends on the name
+    return std::nullopt;
+  }
+  Engine engine = default_engines()[*name];
+  bool all_read = true;
+  for_each_option(engine, [&](const OptionInfo& option, auto& value) {
+    all_read = read_option(object, option, lacking, value) && all_read;
+  });
+  if (!all_read) return std::nullopt;
+  return engine;
 }
 
 void check_units(ObjectReader& root) {
@@ -266,16 +253,19 @@ void check_units(ObjectReader& root) {
   must_be("force_N", force, energy / length, "energy_J divided by length_m");
 }
 
-bool is_sealed(std::string_view text) {
-  constexpr std::size_t digits = 64, length = seal_begin.size() + digits + seal_end.size();
-  if (text.size() < length) return false;
-  const std::string_view seal = text.substr(text.size() - length),
-                         digest = seal.substr(seal_begin.size(), digits);
-  return seal.starts_with(seal_begin) && seal.ends_with(seal_end) &&
-         digest == sha256(text.substr(0, text.size() - length));
+SealedDocument SealedDocument::read(const std::filesystem::path& file, const FileKind& kind) {
+  std::string text = read_text(file, kind);
+  const bool sealed = is_sealed(text);
+  JsonDocument document = JsonDocument::parse(file.string(), text);
+  std::string().swap(text);  // its memory is as large as that of the columns
+  return {std::move(document), sealed};
 }
 
-void finish_sealed(JsonDocument& document, ObjectReader& root, bool sealed) {
+SealedDocument SealedDocument::parse(const std::string& name, const std::string& text) {
+  return {JsonDocument::parse(name, text), is_sealed(text)};
+}
+
+void SealedDocument::finish(ObjectReader& root) const {
   ObjectReader made_by = root.required_object("provenance");  // about the maker of the file, not its content
   for (const std::string& key : made_by.keys()) {
     std::string any;
@@ -291,8 +281,6 @@ void finish_sealed(JsonDocument& document, ObjectReader& root, bool sealed) {
     document.finish();
   }
 }
-
-std::optional<Engine> read_engine(ObjectReader& object) { return read_engine(object, Lacking::any); }
 
 Engine parse_engine(const std::string& name, const std::string& text) {
   JsonDocument document = JsonDocument::parse(name, text);

@@ -1,8 +1,10 @@
 #include <concepts>
+#include <stdexcept>
 #include <type_traits>
 
 #include "impact_damper/base/sha256.hpp"
 #include "impact_damper/engine_options.hpp"
+#include "impact_damper/io/csv_table.hpp"
 #include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/provenance.hpp"
 #include "impact_damper/io/run_columns.hpp"
@@ -39,6 +41,19 @@ void write_columns(JsonWriter& out, const Owner& owner, bool of_list) {
       out.close();
     } else {
       out.field(info.name, in_file(value));
+    }
+  });
+}
+
+// Adds the columns of a section, or of the part of it that one damper has.
+template <class Owner>
+void add_columns(CsvTable& table, const Owner& owner, bool of_list, const std::string& after_name = {}) {
+  for_each_column(owner, of_list, [&](const RunColumnInfo& info, const auto& value) {
+    if constexpr (PartsOfDampers<std::remove_cvref_t<decltype(value)>>) {
+      for (std::size_t i = 0; i < value.size(); ++i)
+        add_columns(table, value[i], of_list, '_' + std::to_string(i + 1));
+    } else {
+      table.add(std::string(info.name) + after_name, info.dimension, in_file(value));
     }
   });
 }
@@ -96,6 +111,18 @@ std::string run_text(const Run& run, const std::optional<Scales>& scales) {
   write_columns(out, run, has_list(run));
   write_provenance(out);
   return sealed(out.finish());
+}
+
+std::string run_csv(const Run& run, const std::optional<Scales>& scales) {
+  CsvTable table("run", scales);
+  for_each_column(run, has_list(run), [&]<class Section>(const RunColumnInfo&, const Section& section) {
+    if constexpr (!std::same_as<Section, std::optional<EnergyBalance>>)  // energies are no table
+      if (section && table.empty()) add_columns(table, *section, has_list(run));
+  });
+  if (table.empty())
+    throw std::invalid_argument(
+        "record: one of half_cycles, impacts, contacts and history is needed for CSV");
+  return table.text();
 }
 
 }  // namespace impact_damper

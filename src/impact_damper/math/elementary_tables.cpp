@@ -1,7 +1,7 @@
-#include "impact_damper/math/elementary_tables.hpp"
-
 #include <bit>
 #include <cstdint>
+
+#include "impact_damper/math/elementary_kernels.hpp"
 
 namespace impact_damper::elementary {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "impact_damper/base/expected.hpp"
+#include "impact_damper/base/errors.hpp"
 #include "impact_damper/engine.hpp"
 #include "impact_damper/math/dense.hpp"
 #include "impact_damper/orbits/multipliers.hpp"

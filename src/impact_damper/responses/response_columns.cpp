@@ -1,10 +1,12 @@
-#include "impact_damper/responses/response_columns.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "impact_damper/analysis/design.hpp"
+#include "impact_damper/io/csv_table.hpp"
+#include "impact_damper/responses/response_fields.hpp"
+#include "impact_damper/responses/response_file.hpp"
 
 namespace impact_damper {
 namespace {
@@ -131,6 +133,113 @@ std::vector<Column> linear_columns(const Scene& scene, const Axis& axis) {
     add(locked, 1 + secondary_mass(there));
   }
   return {empty, locked};
+}
+
+namespace {
+
+using Words = std::vector<std::string>;
+using Numbers = std::vector<std::optional<double>>;
+
+template <class Row>
+void add(CsvTable& table, const RowColumns<Row>& columns, std::vector<Row>& rows,
+         const std::string& after_name = {}) {
+  for (const RowColumn<Row>& each : columns) {
+    Numbers numbers;
+    for (Row& row : rows) numbers.push_back(number_in(each.cell_in(row)));
+    table.add(std::string(each.name) + after_name, each.dimension, numbers);
+  }
+}
+// Adds the columns of each damper of a list.
+template <class Row>
+void add_dampers(CsvTable& table, std::size_t dampers, std::vector<Row>& rows) {
+  for (std::size_t d = 0; d < dampers; ++d) {
+    std::vector<DamperOfRow> parts = dampers_of(rows, d);
+    add(table, damper_columns(), parts, '_' + std::to_string(d + 1));
+  }
+}
+
+void add(CsvTable& table, const SweepResponse& response) {
+  Words numbers, ways, ends;
+  std::vector<SteadyState> states;
+  for (std::size_t n = 0; n < response.sweeps.size(); ++n) {
+    const Sweep& sweep = response.sweeps[n];
+    for (const auto& [name, way] : {std::pair("up", &sweep.up), std::pair("down", &sweep.down)}) {
+      for (const SteadyState& each : *way) {
+        numbers.push_back(std::to_string(n));
+        ways.emplace_back(name);
+        ends.emplace_back(end_of(each));
+        states.push_back(each);
+      }
+    }
+  }
+  const Axis& axis = response.axis;
+  const std::size_t dampers = listed_dampers(response.scene);
+  table.add("sweep", numbers);
+  table.add("way", ways);
+  table.add(name_of(axis.number), field_of(axis.number).dimension, axis.values());
+  table.add("end", ends);
+  add(table, steady_columns(dampers), states);
+  add_dampers(table, dampers, states);
+  for (const Column& column : linear_columns(response.scene, axis))
+    table.add(std::string(column.name), column.dimension, column.numbers);
+}
+
+void add(CsvTable& table, const BasinResponse& response) {
+  const Axis &first = response.first, &second = response.second;
+  const std::vector<std::int32_t>& attractor = response.basin.attractor;
+  std::vector<double> of_first, of_second;
+  Words attractors;
+  for (std::size_t n = 0; n < attractor.size(); ++n) {
+    of_first.push_back(first.value(std::int64_t(n) % first.count));
+    of_second.push_back(second.value(std::int64_t(n) / first.count));
+    attractors.push_back(std::to_string(attractor[n]));
+  }
+  table.add(name_of(first.number), field_of(first.number).dimension, of_first);
+  table.add(name_of(second.number), field_of(second.number).dimension, of_second);
+  table.add("attractor", attractors);
+}
+
+void add(CsvTable& table, const OrbitsResponse& response) {
+  Words numbers, events;
+  std::vector<double> values;
+  std::vector<OrbitPoint> points;
+  for (std::size_t n = 0; n < response.branches.size(); ++n) {
+    const OrbitBranch& branch = response.branches[n];
+    const auto add_row = [&](std::string_view event, const OrbitPoint& point) {
+      numbers.push_back(std::to_string(n));
+      events.emplace_back(event);
+      values.push_back(point.value);
+      points.push_back(point);
+    };
+    for (std::size_t i = 0; i <= branch.points.size(); ++i) {
+      for (const OrbitEvent& event : branch.events)
+        if (event.points_before == std::int64_t(i)) add_row(name_of(event.kind), event);
+      if (i < branch.points.size()) add_row("", branch.points[i]);
+    }
+  }
+  const Parameter parameter = response.range.parameter;
+  const std::size_t dampers = listed_dampers(response.scene);
+  table.add("branch", numbers);
+  table.add("event", events);
+  table.add(std::string(name_of(parameter)), field_of(member_of(parameter)).dimension, values);
+  add(table, orbit_columns(dampers), points);
+  add_dampers(table, dampers, points);
+}
+
+void add(CsvTable& table, const LyapunovResponse& response) {
+  const LyapunovExponents& found = response.found;
+  Numbers errors(found.standard_errors.begin(), found.standard_errors.end());
+  errors.resize(found.exponents.size());  // there are none for less than ten periods
+  table.add("exponent", Dimension::rate, found.exponents);
+  table.add("standard_error", Dimension::rate, errors);
+}
+
+}  // namespace
+
+std::string response_csv(const Response& response, const std::optional<Scales>& scales) {
+  CsvTable table("response", scales);
+  std::visit([&](const auto& each) { add(table, each); }, response);
+  return table.text();
 }
 
 }  // namespace impact_damper

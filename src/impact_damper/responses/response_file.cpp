@@ -322,8 +322,8 @@ Scene read_forced_scene(ObjectReader object) {
   return scene;
 }
 
-Response read_whole(JsonDocument document, bool sealed) {
-  ObjectReader root = document.root();
+Response read_whole(SealedDocument file) {
+  ObjectReader root = file.root();
   if (root.require("schema")) root.word("schema", {response_schema});
   const std::array<Response, 4> kinds{SweepResponse{}, BasinResponse{}, OrbitsResponse{}, LyapunovResponse{}};
   std::vector<std::string_view> names(kinds.size());
@@ -331,36 +331,32 @@ Response read_whole(JsonDocument document, bool sealed) {
   const auto kind = root.require("kind") ? root.word("kind", names) : std::nullopt;
   if (!kind) {
     root.keys();  // which of them are known depends on the kind
-    document.finish();
+    file.document.finish();
   }
   Response read = kinds[kind.value_or(0)];
   std::visit(
       [&](auto& response) {
         ObjectReader engine = root.required_object("engine");
         response.scene = read_forced_scene(root.required_object("scene"));
-        if (const auto its = read_engine_of_response(engine)) response.engine = *its;
+        if (const auto its = read_engine(engine, Lacking::null)) response.engine = *its;
         if (std::holds_alternative<Cem>(response.engine))
           engine.reject("name", "must be exact or restitution, got cem");
         check_units(root);
         describe(JsonFields(root), response);
       },
       read);
-  finish_sealed(document, root, sealed);
+  file.finish(root);
   return read;
 }
 
 }  // namespace
 
 Response read_response(const std::filesystem::path& file) {
-  std::string text = read_text(file, response_kind);
-  const bool sealed = is_sealed(text);
-  JsonDocument document = JsonDocument::parse(file.string(), text);
-  std::string().swap(text);
-  return read_whole(std::move(document), sealed);
+  return read_whole(SealedDocument::read(file, response_kind));
 }
 
 Response parse_response(const std::string& name, const std::string& text) {
-  return read_whole(JsonDocument::parse(name, text), is_sealed(text));
+  return read_whole(SealedDocument::parse(name, text));
 }
 
 std::string response_text(const Response& response, const std::optional<Scales>& scales) {

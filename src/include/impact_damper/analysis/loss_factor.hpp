@@ -56,30 +56,17 @@ LossFactor local_loss_factor(const HalfCycles& half_cycles, std::size_t first, s
 // less than a half cycle, is left out. Needs half_cycles.
 LossFactor loss_before_failure(const Run& run);
 
-// eta / nu: "specific total loss factor".
-inline double specific_loss(double eta, double mass_ratio) { return eta / mass_ratio; }
-
-// (eta - 2 zeta) / nu: "specific secondary mass loss factor", what the impacts alone take out.
-inline double specific_secondary_loss(double eta, double damping_ratio, double mass_ratio) {
-  return (eta - 2 * damping_ratio) / mass_ratio;
-}
-
-// (eta - 2 zeta / (1 + nu)) / nu: the same where the primary mass carries the secondary along
-// (M11.3, from M11.1 and M11.2).
-inline double specific_carried_loss(double eta, double damping_ratio, double mass_ratio) {
-  return (eta - 2 * damping_ratio / (1 + mass_ratio)) / mass_ratio;
-}
-
-// A (eta - 2 zeta) / nu, the ordinate of Figures 12 and 13, from `specific` = (eta - 2 zeta) / nu; and that
-// divided by 1 - e, e < 1, the ordinate of Figure 14.
-inline double amplitude_times_loss(double amplitude, double specific) { return amplitude * specific; }
-inline double loss_by_restitution(double ordinate, double restitution) {
-  return ordinate / (1 - restitution);
-}
-
-// One of these ordinates for every row of `loss`, with the scene's nu, zeta and e; carried is
-// A (eta - 2 zeta / (1 + nu)) / nu.
-enum class LossOrdinate { eta, specific, specific_secondary, amplitude_times, by_restitution, carried };
+// The ordinates of figures; A is the amplitude, nu, zeta and e are the scene's.
+enum class LossOrdinate {
+  eta,
+  specific,            // eta/nu: "specific total loss factor"
+  specific_secondary,  // (eta - 2 zeta)/nu: "specific secondary mass loss factor", of the impacts alone
+  amplitude_times,     // A (eta - 2 zeta)/nu, of Figures 12 and 13
+  by_restitution,      // A (eta - 2 zeta)/nu divided by 1 - e, e < 1, of Figure 14
+  // A (eta - 2 zeta/(1 + nu))/nu: the primary mass carries the secondary along (M11.3, from M11.1 and M11.2).
+  carried,
+};
+// One of these for every row of `loss`.
 std::vector<double> ordinate(const LossFactor& loss, const Scene& scene, LossOrdinate which);
 
 }  // namespace impact_damper

@@ -2,8 +2,8 @@
 // its end, regular impacting, impact failure. Rows are those of Run::half_cycles. Row 0, from the release to
 // the first zero crossing, is less than a half cycle, so the regimes leave it out; only first_row_below()
 // includes it. "Needs" names the sections that the run must have recorded; without one of them the function
-// throws std::invalid_argument. The scene must have one damper; a run with a list is divided by
-// one_of_several.hpp first.
+// throws std::invalid_argument. The scene must have one damper; of a run with a list run_of_damper() returns
+// the part of each.
 #pragma once
 
 #include <cstdint>
@@ -82,5 +82,20 @@ std::optional<RegularWindow> longest_window(const std::vector<RegularWindow>& wi
 
 // The row whose amplitude first lies below `amplitude`. Absent if none does.
 std::optional<std::size_t> first_row_below(const HalfCycles& half_cycles, double amplitude);
+
+// The time at which the amplitude of a run has come below a bound, in units of 1/Omega_n; absent if the run
+// does not get there. In an oscillation it is that of the peak of the first half cycle below `amplitude` > 0.
+// Where a half cycle leaves less than a tenth of the amplitude before it, or the motion creeps back to zero,
+// it is the last time at which |x| is as large as `amplitude`, found by simulating the same motion again.
+// (M15.13) shows that it is the last if no half cycle below it is complete. Needs half_cycles; throws what
+// simulate() throws.
+std::optional<double> time_below(const Run& run, double amplitude);
+
+// One damper's part of a run with several, as a run of one damper.
+// The run's half cycles, impacts, contacts and history, as far as they were recorded, with the impacts of the
+// damper `number` (from 0, of those of the scene) alone, and lengths and velocities divided by its clearance
+// instead of epsilon. Its scene is that damper alone on the primary mass, with the same initial condition. It
+// has no energies, as it lacks the losses of the other dampers.
+Run run_of_damper(const Run& run, std::size_t number);
 
 }  // namespace impact_damper

@@ -1,9 +1,12 @@
-// The errors outside the mathematics: each kind has an exit code of its own in the program.
+// The errors outside the mathematics, each kind of which has an exit code of its own in the program; and
+// results of steps that can fail.
 #pragma once
 
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <variant>
 #include <vector>
 
 namespace impact_damper {
@@ -54,6 +57,29 @@ class NumericalError : public std::runtime_error {
 class IoError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+};
+
+// The result of a step that can fail, or the reason why there is none. The caller must check first whether
+// there is a result: reading one that is not there throws std::bad_variant_access, as does asking for a
+// failure that did not happen.
+template <class Value, class Failure>
+class Expected {
+ public:
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  Expected(Value value) : content_(std::move(value)) {}  // cppcheck-suppress noExplicitConstructor
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  Expected(Failure failure) : content_(std::move(failure)) {}  // cppcheck-suppress noExplicitConstructor
+
+  explicit operator bool() const { return std::holds_alternative<Value>(content_); }
+  const Value& operator*() const& { return std::get<Value>(content_); }
+  Value& operator*() & { return std::get<Value>(content_); }
+  Value&& operator*() && { return std::get<Value>(std::move(content_)); }
+  const Value* operator->() const { return &**this; }
+  Value* operator->() { return &**this; }
+  const Failure& failure() const { return std::get<Failure>(content_); }
+
+ private:
+  std::variant<Value, Failure> content_;
 };
 
 }  // namespace impact_damper

@@ -1,6 +1,7 @@
 // The wording in which bad input is rejected, the same for files and command lines.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -23,6 +24,12 @@ struct NumberRange {
 constexpr NumberRange within(double least, double most) { return {least, most}; }
 constexpr NumberRange at_least(double least) { return {least}; }
 constexpr NumberRange above(double least) { return {least, std::numeric_limits<double>::max(), false}; }
+
+// A kind of file, and its largest allowed size.
+struct FileKind {
+  std::string_view name;  // "scene"
+  std::size_t most_bytes;
+};
 
 // Returns `text` on one line of UTF-8, with a question mark for each byte that is no character and each
 // control character. If it is longer than `most` characters: its first `most`, then "...".

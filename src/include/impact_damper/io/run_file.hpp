@@ -18,13 +18,10 @@
 #include <string_view>
 
 #include "impact_damper/base/errors.hpp"
-#include "impact_damper/io/file_kind.hpp"
 #include "impact_damper/run.hpp"
 #include "impact_damper/units.hpp"
 
 namespace impact_damper {
-
-class ObjectReader;  // json_reader.hpp
 
 inline constexpr std::string_view run_schema = "impact-damper/run/1";
 
@@ -60,7 +57,5 @@ Run parse_run(const std::string& name, const std::string& text);
 // Reads the engine in `text`, the object "engine" of a run file by itself. Only its "name" must be given;
 // other options have their defaults. Throws InputError as above.
 Engine parse_engine(const std::string& name, const std::string& text);
-// Reads an engine from an object of a document, which collects the problems; absent if there are any.
-std::optional<Engine> read_engine(ObjectReader& object);
 
 }  // namespace impact_damper

@@ -23,13 +23,9 @@
 #include <string>
 
 #include "impact_damper/base/errors.hpp"
-#include "impact_damper/io/file_kind.hpp"
 #include "impact_damper/units.hpp"
 
 namespace impact_damper {
-
-class ObjectReader;  // json_reader.hpp
-class JsonWriter;    // json_writer.hpp
 
 // Enough for most_dampers, each number with all its digits.
 inline constexpr FileKind scene_kind{"scene", 1 << 20};
@@ -48,19 +44,6 @@ SceneFile parse_scene_file(const std::string& name, const std::string& text);
 // Return its scene alone.
 Scene read_scene(const std::filesystem::path& file);
 Scene parse_scene(const std::string& name, const std::string& text);
-
-// Reads the fields of a scene from an object, which may hold others and collects the problems, and writes
-// them into one. For the project's own readers and writers: neither class is part of the library's interface.
-// Where a run is read, every field must be there, absent stops as null.
-enum class MissingFields { have_defaults, are_problems };
-Scene read_scene_fields(ObjectReader& object, MissingFields missing = MissingFields::have_defaults);
-// Returns a scene without dampers if their list cannot be read.
-// Reads a whole scene, dimensionless or in units. If there are problems, the result must not be used.
-SceneFile read_scene_object(ObjectReader& object);
-void write_scene_fields(JsonWriter& out, const Scene& scene);
-// Writes the fields without the stops.
-void write_scene_numbers(JsonWriter& out, const Scene& scene);
-void write_unit_fields(JsonWriter& out, const SceneInUnits& scene);  // those that are given
 
 // Returns the scene as JSON on one line, every field in the order of Scene, absent stops as null, a
 // list of dampers in place of the numbers of one. It reads back as an equal scene. Throws NumericalError if a

@@ -1,12 +1,36 @@
-// Power series in time, which follow a motion for a short time without a sine.
+// Power series in time, which follow a motion for a short time without a sine, and series with fewer terms
+// for the same accuracy.
 #pragma once
 
 #include <array>
 #include <cstddef>
 
-#include "impact_damper/math/simd_pair.hpp"
-
 namespace impact_damper {
+
+// Two numbers that undergo the same operations: one instruction for both, where the processor has it.
+template <class Real>
+struct SimdPairOf {
+  class Type {
+   public:
+    Type() = default;
+    Type(const Real& first, const Real& second) : both_{first, second} {}
+    const Real& operator[](std::size_t i) const { return both_[i]; }
+    friend Type operator+(const Type& a, const Type& b) { return {a[0] + b[0], a[1] + b[1]}; }
+    friend Type operator-(const Type& a, const Type& b) { return {a[0] - b[0], a[1] - b[1]}; }
+    friend Type operator*(const Type& a, const Type& b) { return {a[0] * b[0], a[1] * b[1]}; }
+    friend Type operator*(const Type& a, const Real& b) { return {a[0] * b, a[1] * b}; }
+    friend Type operator/(const Type& a, const Real& b) { return {a[0] / b, a[1] / b}; }
+
+   private:
+    std::array<Real, 2> both_{};
+  };
+};
+template <>
+struct SimdPairOf<double> {
+  using Type [[gnu::vector_size(16)]] = double;
+};
+template <class Real>
+using SimdPair = typename SimdPairOf<Real>::Type;
 
 // Derivatives u, u', ... at one instant.
 template <class Real, std::size_t N>
@@ -95,6 +119,47 @@ template <class Real>
     c[n] = over[n] * both;
   }
   return c;
+}
+
+// --- Shortened series -------------------------------------------------------------------------------------
+// A power series on [0, 1] is shortened: the contributions of its higher terms are moved to the lower ones,
+// so that far fewer terms reach the same accuracy (docs/mathematics.md, M4.5).
+//
+// From the highest down, the term of the power n is replaced by the lower powers of T*_n, Chebyshev's
+// polynomial of [0, 1]. The error is at most the term times 2^(1-2n), everywhere in [0, 1]; leaving the term
+// out would cost the whole term at 1.
+
+// The amounts that one unit of the coefficient of the power kept + i adds to the coefficients below `kept`.
+template <class Real, std::size_t kept, std::size_t count>
+inline const std::array<PairedSeries<Real, kept / 2>, count> shares_of_higher_terms = [] {
+  static_assert(kept % 2 == 0);
+  std::array<PairedSeries<Real, kept / 2>, count> shares;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::array<Real, kept + count> c{};
+    c[kept + i] = 1;
+    for (std::size_t n = kept + i; n >= kept; --n) {
+      // The coefficients of T*_n, scaled so that the highest is c[n]: each follows from the one above it.
+      Real coefficient = c[n];
+      for (std::size_t k = n; k > 0; --k) {
+        coefficient *= -Real(double(k * (2 * k - 1))) / Real(double(2 * (n + k - 1) * (n - k + 1)));
+        c[k - 1] -= coefficient;
+      }
+    }
+    for (std::size_t k = 0; k < kept / 2; ++k) shares[i][k] = SimdPair<Real>{c[2 * k], c[2 * k + 1]};
+  }
+  return shares;
+}();
+
+// Returns the amounts that the coefficients of the powers `kept`, kept + 1, ... add to those below.
+template <std::size_t kept, class Real, std::size_t count>
+PairedSeries<Real, kept / 2> share_of(const std::array<Real, count>& higher) {
+  const auto& shares = shares_of_higher_terms<Real, kept, count>;
+  PairedSeries<Real, kept / 2> sum;
+  for (std::size_t k = 0; k < kept / 2; ++k) {
+    sum[k] = shares[0][k] * higher[0];
+    for (std::size_t i = 1; i < count; ++i) sum[k] = sum[k] + shares[i][k] * higher[i];
+  }
+  return sum;
 }
 
 }  // namespace impact_damper

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "impact_damper/math/shortened_series.hpp"
+#include "impact_damper/math/power_series.hpp"
 #include "impact_damper/motion/oscillator.hpp"
 
 namespace impact_damper {

@@ -15,7 +15,7 @@
 
 #include "impact_damper/math/double_double.hpp"
 #include "impact_damper/math/elementary.hpp"
-#include "impact_damper/math/simd_pair.hpp"
+#include "impact_damper/math/power_series.hpp"
 
 namespace impact_damper {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "impact_damper/base/enumeration.hpp"
-#include "impact_damper/base/expected.hpp"
+#include "impact_damper/base/errors.hpp"
 #include "impact_damper/orbits/multipliers.hpp"
 #include "impact_damper/orbits/poincare_map.hpp"
 

@@ -15,7 +15,7 @@
 #include <optional>
 #include <vector>
 
-#include "impact_damper/base/expected.hpp"
+#include "impact_damper/base/errors.hpp"
 #include "impact_damper/math/dense.hpp"
 #include "impact_damper/motion/state.hpp"
 #include "impact_damper/orbits/orbit_impact.hpp"

@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "impact_damper/io/file_kind.hpp"
 #include "impact_damper/responses/responses.hpp"
 #include "impact_damper/units.hpp"
 

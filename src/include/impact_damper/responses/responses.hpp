@@ -12,7 +12,7 @@
 
 #include "impact_damper/orbits/branches.hpp"
 #include "impact_damper/orbits/lyapunov.hpp"
-#include "impact_damper/steady/basin.hpp"
+#include "impact_damper/steady/sweep.hpp"
 
 namespace impact_damper {
 

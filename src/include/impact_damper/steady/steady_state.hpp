@@ -13,7 +13,7 @@
 #include <optional>
 #include <vector>
 
-#include "impact_damper/base/expected.hpp"
+#include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/text.hpp"
 #include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/motion/state.hpp"
