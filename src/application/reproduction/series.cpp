@@ -158,10 +158,12 @@ Table table_of(const Figure& figure, const std::vector<const FigureRun*>& source
                const std::vector<const FigureResponse*>& found) {
   const Scene& scene = sources.empty() ? scene_of(found.at(0)->response) : sources[0]->run.scene;
   check_comparable(figure, sources);
-  for (const FigureResponse* source : found)  // forces may differ
+  for (const FigureResponse* source : found) {  // forces may differ
     const Engine& engine =
         std::visit([](const auto& each) -> const Engine& { return each.engine; }, source->response);
-  require_same_ratios(figure, source->file, scene_of(source->response), scene, engine, "the figure's others");
+    require_same_ratios(figure, source->file, scene_of(source->response), scene, engine,
+                        "the figure's others");
+  }
 
   Table table{header_of(figure, subtitle(figure, sources, scene)), {}};
   for (const std::string& name : scenes_of(figure)) {

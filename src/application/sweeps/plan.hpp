@@ -25,6 +25,9 @@
 
 namespace impact_damper {
 
+class ObjectReader;  // json_reader.hpp
+class JsonWriter;    // json_writer.hpp
+
 // A number of the scene that may take other values: one of a dimensionless scene, or one of a scene in units,
 // whose name and unit are those of its file. Names of several dampers end in the damper's number, from 1:
 // clearance_2. Stops are not among them.
