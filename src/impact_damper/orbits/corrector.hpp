@@ -2,6 +2,7 @@
 // (docs/mathematics.md, 13.6).
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <vector>
