@@ -45,6 +45,8 @@ def compiled(build):
         sources = re.findall('#include "(.*[.]cpp)"', file.read_text()) if "Unity" in file.parts else [str(file)]
         if any(SOURCE / "src" not in Path(source).parents for source in sources):
             continue  # generated, or of the tests
+        if " -o tests/" in entry["command"]:
+            continue  # compiled once more, for a test
         # Without the precompiled header: a source that lacks an include is found so, and clang cannot read g++'s.
         options = [word for word in shlex.split(entry["command"])[1:] if re.match("-(D|I|isystem|f|m|std)", word) or
                    not word.startswith("-") and "/include" in word and not word.endswith(".o")]

@@ -178,7 +178,9 @@ void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& cat
           item.reject("curves", i, "must draw runs of this catalogue, got the string " + in_quotes(name));
         if (const std::string missing = run ? missing_record(figure.table, run->record) : "";
             !missing.empty())
-          item.reject("curves", i, "needs \"" + missing + "\" in the record of run " + name);
+          item.reject(
+              "curves", i,
+              std::string("needs \"").append(missing).append("\" in the record of run ").append(name));
       }
     }
     return;
@@ -192,7 +194,12 @@ void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& cat
       continue;
     }
     if (const std::string missing = missing_record(figure.table, scene->record); !missing.empty())
-      item.reject("curves", i, "needs \"" + missing + "\" in the scene's record, which " + name + " lacks");
+      item.reject("curves", i,
+                  std::string("needs \"")
+                      .append(missing)
+                      .append("\" in the scene's record, which ")
+                      .append(name)
+                      .append(" lacks"));
     const auto opens_window = [&](const AmplitudeWindow& window) {
       return window.amplitude == figure.window;
     };

@@ -96,15 +96,18 @@ std::optional<RegularWindow> nearest_window(const Asked& asked, const Run& run) 
 // members.
 double window_nearest(const Asked& asked, const Run& run) {
   const auto window = nearest_window(asked, run);
-  return window ? std::min(window->upper, std::max(window->lower, asked.number("amplitude"))) : infinity;
+  if (!window) return infinity;
+  return std::min(window->upper, std::max(window->lower, asked.number("amplitude")));
 }
 double window_upper(const Asked& asked, const Run& run) {
   const auto window = nearest_window(asked, run);
-  return window ? window->upper : infinity;
+  if (!window) return infinity;
+  return window->upper;
 }
 double window_lower(const Asked& asked, const Run& run) {
   const auto window = nearest_window(asked, run);
-  return window ? window->lower : infinity;
+  if (!window) return infinity;
+  return window->lower;
 }
 
 double windows_in_order(const Asked& asked, const Run& run) {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "impact_damper/motion/contact_modes.hpp"
@@ -23,8 +24,8 @@ struct VariationalCoefficients {
     std::optional<UnforcedModes> modes;  // of their contacts
   };
 
-  VariationalCoefficients(const Scene& of_scene, const Engine& engine)
-      : scene(of_scene),
+  VariationalCoefficients(Scene of_scene, const Engine& engine)
+      : scene(std::move(of_scene)),
         rigid(has_rigid_walls(engine)),
         zeta(scene.damping_ratio),
         force{scene.force_amplitude, scene.force_frequency},
