@@ -44,15 +44,6 @@ std::optional<double> least_interval(const std::vector<OrbitImpact>& impacts, do
   return least;
 }
 
-// The largest modulus of a component of a - b.
-double largest_departure(const SceneState& a, const SceneState& b) {
-  double most = std::max(std::fabs(a.x - b.x), std::fabs(a.v - b.v));
-  for (std::size_t i = 0; i < a.dampers.size(); ++i)
-    most = std::max(
-        {most, std::fabs(a.dampers[i].y - b.dampers[i].y), std::fabs(a.dampers[i].w - b.dampers[i].w)});
-  return most;
-}
-
 }  // namespace
 
 StateVector vector_of(const SceneState& s) {
@@ -115,8 +106,7 @@ Expected<PoincareImage, StopReason> PoincareMap::operator()(const SceneState& s,
     image.by_amplitude[i] *= mirror;
   }
   image.one_sided = carried.one_sided;
-  if (largest_departure(image.state, s) <= misses_within)
-    image.nearest_miss = nearest_miss(*coefficients_, run);
+  if (distance(image.state, s) <= misses_within) image.nearest_miss = nearest_miss(*coefficients_, run);
   image.impacts.reserve(run.chain.impacts.size());
   for (const MotionChain::Impact& each : run.chain.impacts)
     image.impacts.push_back({each.time, each.wall, std::fabs(each.w), each.damper});
