@@ -239,8 +239,8 @@ TEST_CASE("a pressed contact rings up just above the limit and dies away just be
                                   {.history = {{0.3, 0.8, 200}}});
         double largest = 0;
         for (std::size_t i = 0; i < run.history->x.size(); ++i) {
-          const double pressed = compliance * run.history->x[i];
-          largest = std::max(largest, std::abs(run.history->dampers[0].y[i] / pressed - 1));
+          const double pressed_to = compliance * run.history->x[i];
+          largest = std::max(largest, std::abs(run.history->dampers[0].y[i] / pressed_to - 1));
         }
         return largest;
       };

@@ -80,13 +80,15 @@ TEST_CASE(
   };
   for (const Scene& scene : {bounce_down(160), forced, overlapping}) {
     const Run exact = simulate(scene, Exact{}, looked_at(scene));
-    for (const auto& [damper, expected] : {Case{Damper::centred, 2}, Case{Damper::lagged, 1}}) {
-      CAPTURE(name_of(damper));
-      const Distance coarse = distance(scene, {.time_step = 2e-5, .damper = damper, .locate = true}, exact),
-                     fine = distance(scene, {.time_step = 1e-5, .damper = damper, .locate = true}, exact);
-      CHECK(std::abs(order(coarse.x, fine.x) - expected) < 0.15);
-      if (fine.amplitude > 0) CHECK(std::abs(order(coarse.amplitude, fine.amplitude) - expected) < 0.15);
-      CHECK(std::abs(order(coarse.energy, fine.energy) - expected) < 0.15);
+    for (const Case& each : {Case{Damper::centred, 2}, Case{Damper::lagged, 1}}) {
+      CAPTURE(name_of(each.damper));
+      const Distance coarse =
+                         distance(scene, {.time_step = 2e-5, .damper = each.damper, .locate = true}, exact),
+                     fine =
+                         distance(scene, {.time_step = 1e-5, .damper = each.damper, .locate = true}, exact);
+      CHECK(std::abs(order(coarse.x, fine.x) - each.expected) < 0.15);
+      if (fine.amplitude > 0) CHECK(std::abs(order(coarse.amplitude, fine.amplitude) - each.expected) < 0.15);
+      CHECK(std::abs(order(coarse.energy, fine.energy) - each.expected) < 0.15);
     }
   }
 }
