@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "impact_damper/motion/wall.hpp"
-
 namespace impact_damper {
 namespace {
 

@@ -11,6 +11,7 @@
 
 #include "impact_damper/motion/contact_modes.hpp"
 #include "impact_damper/motion/impact_law.hpp"
+#include "impact_damper/motion/wall.hpp"
 #include "impact_damper/orbits/variational_equations.hpp"
 
 namespace impact_damper {

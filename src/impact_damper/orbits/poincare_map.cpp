@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "impact_damper/engines/compatibility.hpp"
-#include "impact_damper/motion/wall.hpp"
+#include "impact_damper/math/elementary.hpp"
 #include "impact_damper/orbits/nearest_miss.hpp"
 #include "impact_damper/orbits/variational_equations.hpp"
 

@@ -14,7 +14,6 @@
 #include "impact_damper/motion/contact_without_modes.hpp"
 #include "impact_damper/motion/energy.hpp"
 #include "impact_damper/motion/forced_motion.hpp"
-#include "impact_damper/motion/wall.hpp"
 #include "impact_damper/orbits/masses_along_run.hpp"
 
 namespace impact_damper {
