@@ -159,4 +159,5 @@ TEST_CASE("a rule that lacks its columns says which") {
   Run run;
   CHECK_THROWS_AS(regular_windows(run), std::invalid_argument);
   CHECK_THROWS_AS(stuck_contacts(run), std::invalid_argument);
+  CHECK_THROWS_AS(time_below(run, 1), std::invalid_argument);
 }

@@ -188,7 +188,7 @@ std::optional<double> last_time_at(const Run& run, double begin, double end, dou
 
 std::optional<double> time_below(const Run& run, double amplitude) {
   constexpr double least_part_of_a_swing = 0.1;
-  const HalfCycles& rows = *run.half_cycles;
+  const HalfCycles& rows = half_cycles_of(run);
   if (const auto found = first_row_below(rows, amplitude)) {
     const std::size_t row = *found;
     if (row == 0 || rows.amplitude[row] >= least_part_of_a_swing * rows.amplitude[row - 1])

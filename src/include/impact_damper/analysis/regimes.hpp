@@ -1,9 +1,9 @@
 // The regimes that a decay passes through, found in a run's columns by stated rules: stuck, bounce-down and
 // its end, regular impacting, impact failure. Rows are those of Run::half_cycles. Row 0, from the release to
 // the first zero crossing, is less than a half cycle, so the regimes leave it out; only first_row_below()
-// includes it. "Needs" names the sections that the run must have recorded; without one of them the function
-// throws std::invalid_argument. The scene must have one damper; of a run with a list run_of_damper() returns
-// the part of each.
+// and time_below() include it. "Needs" names the sections that the run must have recorded; without one of
+// them the function throws std::invalid_argument. The scene must have one damper, except for time_below(); of
+// a run with a list run_of_damper() returns the part of each.
 #pragma once
 
 #include <cstdint>
@@ -91,11 +91,11 @@ std::optional<std::size_t> first_row_below(const HalfCycles& half_cycles, double
 // simulate() throws.
 std::optional<double> time_below(const Run& run, double amplitude);
 
-// One damper's part of a run with several, as a run of one damper.
-// The run's half cycles, impacts, contacts and history, as far as they were recorded, with the impacts of the
-// damper `number` (from 0, of those of the scene) alone, and lengths and velocities divided by its clearance
-// instead of epsilon. Its scene is that damper alone on the primary mass, with the same initial condition. It
-// has no energies, as it lacks the losses of the other dampers.
+// Returns one damper's part of a run with several, as a run of one damper: the run's half cycles, impacts,
+// contacts and history, as far as they were recorded, with the impacts of the damper `number` (from 0, of
+// those of the scene) alone, and lengths and velocities divided by its clearance instead of epsilon. Its
+// scene is that damper alone on the primary mass, with the same initial condition. It has no energies, as it
+// lacks the losses of the other dampers.
 Run run_of_damper(const Run& run, std::size_t number);
 
 }  // namespace impact_damper
