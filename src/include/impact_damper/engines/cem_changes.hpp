@@ -1,5 +1,5 @@
 // The changes in one step of the component element method: masses that come to a wall or leave it, and which
-// of them join the primary mass or part from it (Cem::stuck_speed).
+// of them come to stick to it or cease to, where the option Cem::stuck_speed allows sticking.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace impact_damper {
 
 // A mass that came to a wall or left it in the last step, the time of this since the beginning of the step,
-// and whether the mass sticks there.
+// and whether the mass sticks to the wall from then on.
 template <class Real>
 struct CemChange {
   std::size_t index;
@@ -31,7 +31,8 @@ class CemChanges {
   CemChanges(Masses& masses, const CemSteps<Real, ForEach>& steps, std::optional<double> stuck_speed)
       : masses_(masses), steps_(steps), stuck_speed_(stuck_speed) {}
 
-  // Sets the list to the changes of the last step, in the order of time.
+  // Sets the list to the changes of the last step, in the order of time. Throws NumericalError if x or y is
+  // not finite.
   void find() {
     all_.clear();
     bool finite = std::isfinite(double(steps_.x().x));
@@ -52,17 +53,20 @@ class CemChanges {
     }
   }
   const std::vector<Change>& all() const { return all_; }
+  // Removes the changes later than the time `time` of the run.
   void erase_after(const Real& time) {
     std::erase_if(all_, [&](const Change& each) { return steps_.begin() + each.at > time; });
   }
-  // Keeps the changes of the earliest time; what comes later in the step is found from there.
+  // Keeps the changes of the earliest time, to double precision, and gives them one time. The motion begins
+  // anew there, and its first step finds the later ones. The list must not be empty.
   void keep_first() {
     const Real first = std::ranges::min_element(all_, {}, &Change::at)->at;
     std::erase_if(all_, [&](const Change& each) { return time_of(each) > time_of({0, first}); });
     for (Change& each : all_) each.at = first;
   }
 
-  // Decides which of the masses join. Returns whether any join or part.
+  // Decides which of the masses join, by Cem::stuck_speed, which must be given. Returns whether any mass
+  // joins, or one that is stuck parts.
   bool find_joining() {
     bool any = false;
     for (Change& change : all_) {
@@ -72,8 +76,9 @@ class CemChanges {
     return any;
   }
   bool any_joins() const { return std::ranges::any_of(all_, &Change::joins); }
-  // Joins the masses that are to join, with their momentum (M17.24), for one damper (M9.10). The energy lost
-  // (M9.11) is a loss of the contacts that begin. s: the state, before and then after.
+  // Makes the masses that join stick to their walls, and sets x' and all y' of the state s to those after it
+  // (M17.24), for one damper (M9.10). The energy lost (M9.11) is added to the losses of the contacts that
+  // begin.
   void join(State& s) {
     std::vector<std::size_t> joining;
     for (const Change& change : all_)
@@ -93,9 +98,9 @@ class CemChanges {
     for (std::size_t i = 0; i < masses_.size(); ++i)
       s.w[i] = masses_[i].stuck ? Real(0) : Real(s.w[i] - gain);
   }
-  // After an impact of the i-th mass on `wall` with the relative velocity w: thrown by it, the primary mass
-  // meets the masses that are stuck to its other wall. Where that may be as fast as an impact that bounces,
-  // these are left to their compliant wall, too.
+  // To be called after an impact of the i-th mass on `wall` with the relative velocity w. It pushes the
+  // primary mass into the masses that are stuck to the other wall. Where they may meet it at stuck_speed or
+  // faster, these are no longer stuck, but in contact with that wall.
   void release_other_side(std::size_t i, Wall wall, const Real& w) {
     const Real& nu = masses_[i].nu;
     if (masses_.joined == 1 || 2 * nu / (1 + nu) * absolute(w) < Real(*stuck_speed_)) return;

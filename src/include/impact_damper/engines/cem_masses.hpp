@@ -19,7 +19,8 @@
 
 namespace impact_damper {
 
-// The container in which CemEngine keeps something for each secondary mass.
+// ForEach of the classes cem_*: the container for what there is of each secondary mass, for a scene of one
+// damper and for a list.
 template <class T>
 using ForOne = std::array<T, 1>;
 template <class T>
@@ -84,6 +85,7 @@ struct CemMasses {
   std::size_t size() const { return all.size(); }
   const CemMass<Real>& operator[](std::size_t i) const { return all[i]; }
   CemMass<Real>& operator[](std::size_t i) { return all[i]; }
+  // Returns value(i) of each mass.
   template <class Value>
   ForEach<Real> of_each(Value&& value) const {
     if constexpr (one) {
@@ -95,7 +97,8 @@ struct CemMasses {
     }
   }
 
-  // Puts a mass to a wall, in contact with it or stuck, or into flight, with the same y.
+  // Sets the wall to which a mass sticks, or with which it is in contact; without a wall it is in flight. y
+  // stays as it is.
   void set_wall(std::size_t i, std::optional<Wall> wall, bool stuck = false) {
     CemMass<Real>& m = all[i];
     const Real smallest = std::numeric_limits<Real>::denorm_min();
@@ -125,11 +128,13 @@ struct CemMasses {
     }
   }
 
-  // Puts masses to the walls with which they are in contact at a release in the state s, with y instead of q,
-  // which becomes q; no impact begins these contacts. They are masses that overlap a wall, then those at rest
-  // at a wall and pressed to it, as y'' decides, or y''' where that is zero to rounding: by where y is a step
-  // later, y'' h^2/2 + y''' h^3/6. In the stuck regime (joins), where both are zero to rounding, the first
-  // later derivative that is not decides; else the first step does. Returns y'' and y''' of a mass at rest.
+  // Sets the walls of all masses at a release in the state s, which has y instead of q and is given q. No
+  // impact begins the contacts of these masses:
+  // - those that overlap a wall;
+  // - those at rest at a wall and pressed to it; they are stuck if `joins`. They are pressed if
+  //   y'' h^2/2 + y''' h^3/6, the way of such a mass in one step, leads into the wall. If `joins`, and y''
+  //   and y''' are zero to rounding, the first later derivative that is not zero decides instead.
+  // Returns y'' and y''' of a mass at rest in flight.
   std::pair<Real, Real> begin_contacts(State& s, const Real& h, bool joins) {
     const auto begin_contact = [&](std::size_t i, std::optional<Wall> wall, bool sticks = false) {
       set_wall(i, wall, sticks);
@@ -152,11 +157,12 @@ struct CemMasses {
   }
 
   Real y(const State& s, std::size_t i) const { return all[i].origin_of_q() + s.q[i]; }
-  // Whether a mass is at rest at a wall, or moves into it.
+  // Whether a mass is at rest exactly at a wall.
   bool rests(const State& s, std::size_t i) const {
     const Real at = y(s, i);
     return (at == 0 || at == all[i].clearance) && s.w[i] == 0;
   }
+  // Whether a mass is exactly at a wall and moves into it.
   bool meets_wall(const State& s, std::size_t i) const {
     const Real at = y(s, i), &w = s.w[i];
     return (at == 0 && w < 0) || (at == all[i].clearance && w > 0);
@@ -197,10 +203,10 @@ struct CemMasses {
 
   Real zeta;
   Forcing<Real> force;
-  ForEach<CemMass<Real>> all;  // in the order of damper_order.hpp
-  std::vector<std::size_t> in_contact;
-  Real joined = 1;                     // the primary mass and those stuck to it, divided by the first
-  Real least_second{}, most_second{};  // limits of x'' while these stay stuck
+  ForEach<CemMass<Real>> all;           // in the order of damper_order.hpp
+  std::vector<std::size_t> in_contact;  // masses in contact that are not stuck, ascending
+  Real joined = 1;                      // the primary mass and those stuck to it, divided by the first
+  Real least_second{}, most_second{};   // limits of x'' while these stay stuck
 };
 
 }  // namespace impact_damper

@@ -30,10 +30,11 @@ class CemSteps {
  public:
   static constexpr std::int64_t block = ForceAtSteps<Real>::block;
 
-  // sums_powers: whether the sums below are wanted.
+  // sums_powers: whether take() adds up `Sums`, for the energy balance.
   CemSteps(Masses& masses, Damper damper, bool sums_powers)
       : masses_(masses), centred_(damper == Damper::centred), sums_powers_(sums_powers) {}
 
+  // Returns the pace with the step size h.
   CemPace<Real> pace_of(const Real& h) const {
     if constexpr (one) {
       const auto& m = masses_[0];
@@ -56,11 +57,13 @@ class CemSteps {
   Real end() const { return origin_ + Real(number_) * pace_.h; }
   // The number of the step of this segment in which `time` lies; the first for earlier times.
   std::int64_t step_of(const Real& time) const { return whole_steps(double((time - origin_) / pace_.h)); }
-  // x at the last step, and its increment there.
+  // x at the end of the last step, and its increment in it.
   const Moment& x() const { return now_; }
+  // The parabola of x, as a function of the time since the last step began.
   Arc<Real> x_arc() const { return arc_of(before_, now_, pace_.h); }
 
-  // Begins a segment with the second-order start: the step before the first is u - h u' + h^2 u''/2.
+  // Begins a segment at `time`, in the state s, with the second-order start: one step before, a coordinate u
+  // is u - h u' + h^2 u''/2.
   void begin_segment(const Real& time, const State& s) {
     const Real h = pace_.h, second = masses_.second_of_x(time, s);
     now_ = {s.x, h * (s.v - h * second / 2)};
@@ -70,13 +73,14 @@ class CemSteps {
     number_ = 0;
     renew_coefficients();
   }
-  // Adds y''' = `third` to the start of a mass at rest on a wall, where y'' is `second`. The second-order
-  // start leaves y on the wall, where the error of a y'' that is zero would decide what comes next.
+  // Adds y''' h^3/6 to the start of a mass at rest on a wall, where y'' = `second` and y''' = `third`, unless
+  // y'' h^2/2 is larger. The second-order start leaves y on the wall, where the error of a y'' that is zero
+  // would decide what comes next.
   void lead_from_rest(std::size_t i, const Real& second, const Real& third) {
     const Real h = pace_.h;
     if (3 * absolute(second) < h * absolute(third)) masses_[i].now.dx += h * h * h * third / 6;
   }
-  // Adds what a force with the rate `rate` moves the primary mass from rest, x''' h^3/6, to the start.
+  // Adds x''' h^3/6 to the start of a primary mass at rest, on which a force grows at `rate`.
   void lead_x_by(const Real& rate) {
     const Real h = pace_.h;
     now_.dx += h * h * h * rate / 6 / masses_.joined;
@@ -137,7 +141,7 @@ class CemSteps {
     }
   }
 
-  // Returns h^2 x'' at the last step, and before it.
+  // Returns h^2 x'' at the end of the last step, and at its beginning.
   Real second_after() const { return second_at(now_, force_.f); }
   Real second_before() const { return now_.dx - before_.dx; }
 

@@ -15,14 +15,14 @@ namespace impact_damper {
 template <class Real, class Force>
 class ChatteringLimit {
  public:
-  // The primary mass and what sticks to it, on the walls of which the masses chatter.
+  // The primary mass and what sticks to it, on the walls of which the other masses chatter.
   struct Carrier {
-    const Driven<Real, Force>* oscillator;
-    Force force;  // on the primary mass
-    Real zeta, mass;
+    const Driven<Real, Force>* oscillator;  // of all these masses
+    Force force;                            // on the primary mass, not divided by `mass`
+    Real zeta, mass;                        // mass: 1 + sigma
     bool some_stick;
-    Real now, x, v;
-    Real span;  // of bounds (Search)
+    Real now, x, v;  // the time, x and x'
+    Real span;       // the time for which bounds on derivatives hold, as Search::span
     ForcedMotion<Real, Force> motion() const {
       return {*oscillator, {force.amplitude / mass, force.frequency}, now, x, v};
     }
@@ -33,21 +33,23 @@ class ChatteringLimit {
     Real a, lost;
     Real per_speed() const { return 2 / (a * lost); }  // duration of all bounces
   };
+  // A mass that chatters.
   struct Chattering {
     std::size_t index;
     Real speed;  // r of (M17.5), with which it comes back to its wall
     Real moves;  // its term of (M17.5), by which x moves at most
     Settling settles{};
-    Real lasts{0};
+    Real lasts{0};  // T_i of (M17.6)
   };
 
   // masses: must outlive this object. tolerance: Restitution::accumulation_tolerance.
   ChatteringLimit(const SecondaryMasses<Real>& masses, const Real& tolerance)
       : masses_(masses), tolerance_(tolerance) {}
 
-  // Finds the masses that join the primary mass now: those on `side`, to which x'' leads, whose chattering
-  // ends before any other event and moves x by less than rounding (M17.5). force: (1 + sigma) x''. Returns x'
-  // gained by the joining, for joining(); nothing if none join.
+  // Finds the masses that join the primary mass now: those in flight whose chattering on the walls of `side`
+  // ends before any other event and moves x by less than rounding (M17.5). side: the sign of x'', 1 for left
+  // and -1 for right walls. force: (1 + sigma) x''. Returns by how much x' jumps where they join, and
+  // joining() then has them; nothing if none join.
   std::optional<Real> find(const Carrier& carrier, const Real& force, const Real& side) {
     carrier_ = carrier;
     const Real on_all = absolute(force), a = on_all / carrier_.mass, span = carrier_.span;
@@ -82,7 +84,7 @@ class ChatteringLimit {
     if (!found) return {};
     return Real(found->momentum / (carrier_.mass + found->mass));
   }
-  // The masses that join.
+  // The masses that join, after find() has returned a jump; those whose chattering ends first come first.
   std::vector<Chattering>& joining() { return chattering_; }
 
  private:
@@ -190,7 +192,8 @@ class ChatteringLimit {
     }
     return std::nullopt;
   }
-  // Whether (M17.5) holds, except that the masses left out are not looked at.
+  // Whether (M17.5) holds for the masses that join. Whether others meet a wall within 2 T is not checked
+  // here.
   template <class EndsSoon>
   bool limit_holds(const Joining& all, const Real& a, EndsSoon&& ends_soon) const {
     const Real epsilon = std::numeric_limits<Real>::epsilon();

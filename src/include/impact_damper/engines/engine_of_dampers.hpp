@@ -12,7 +12,8 @@
 
 namespace impact_damper {
 
-// A mass is in flight or held at a wall: in contact with it, or stuck to it.
+// Base class of these engines. A secondary mass is either in flight or held at a wall: it sticks to a rigid
+// one, or pushes a compliant one.
 template <class Real, class Force, class Observer>
 class EngineOfDampers {
  protected:
@@ -28,26 +29,29 @@ class EngineOfDampers {
         places_(scene.dampers.size()) {}
 
   DamperEnergy& energy_of(std::size_t i) { return energy_[masses_.number[i]]; }
-  // Notes the kinetic energy of each mass, as the initial or the final one.
+  // Stores the kinetic energy that each secondary mass has now in the member `when` of its DamperEnergy,
+  // initial_kinetic or final_kinetic.
   void note_kinetic(double DamperEnergy::*when) {
     for (std::size_t i = 0; i < masses_.size(); ++i) energy_of(i).*when = masses_.kinetic(i, v_);
   }
-  // wall(i): twice the energy of the i-th mass's wall.
+  // Returns the energy of all masses and walls now. wall(i): twice the energy of the i-th mass's wall.
   template <class OfWall>
   Energy energy_now(OfWall&& wall) const {
     return energy_of_masses(x_, v_, masses_.size(), [&](std::size_t i) {
       return EnergyTerms<Real>{masses_.nu[i], masses_.w(i), wall(i)};
     });
   }
+  // Ends the energy balance, which must be wanted. last: the energy at the end of the run.
   void finish(const Energy& last) {
     tracker_.finish(last, losses_);
     observer_.energy_balance().dampers = std::move(energy_);
   }
 
-  // Reports a sample at the time t of a motion. now: x, x' and their departures from a straight line then.
-  // held(set): calls set(i, u, u') for each mass that is held.
-  template <class Change, class Held>
-  void report_sample(const Real& t, const Change& now, Held&& held) {
+  // Reports the observer's next sample, a time t after the beginning of a motion. now: x and its
+  // displacement from a straight line then. held(set) calls set(i, u, u') for each mass that is held, with
+  // its distance u from its wall then.
+  template <class Held>
+  void report_sample(const Real& t, const Displacement<Real>& now, Held&& held) {
     const auto set = [&](std::size_t i, const Real& u, const Real& u1) {
       places_[masses_.number[i]] = masses_.place(i, u, u1);
     };
@@ -59,9 +63,9 @@ class EngineOfDampers {
     held(set);
     observer_.sample(observer_.next_sample(), double(now.x), double(now.v), places_);
   }
-  // Advances all masses to the time t of a motion. Arguments as above.
-  template <class Change, class Held>
-  void advance(const Real& t, const Change& now, Held&& held) {
+  // Advances all masses by a time t from the beginning of a motion. Arguments as above.
+  template <class Held>
+  void advance(const Real& t, const Displacement<Real>& now, Held&& held) {
     masses_.fly(t, now.dx, now.dv);
     held([&](std::size_t i, const Real& u, const Real& u1) {
       masses_.u[i] = u;
@@ -75,11 +79,12 @@ class EngineOfDampers {
   void report_impact(std::size_t i, Wall wall) {
     observer_.impact(double(tracker_.now()), wall, double(masses_.w(i)), double(x_), masses_.number[i]);
   }
+  // Marks a mass as held from the time `since`, which may be later than now where its chattering is not over.
   void hold(std::size_t i, const Real& since) {
     masses_.held[i] = true;
     masses_.held_since[i] = double(since);
   }
-  // Lets a mass fly that is held, and reports its contact, which may be one that has not begun.
+  // Marks a held mass as in flight, and reports its contact, unless that would have begun later than now.
   void let_go(std::size_t i) {
     masses_.held[i] = false;
     const double begin = masses_.held_since[i], end = tracker_.time();

@@ -34,14 +34,15 @@ Energy energy_of_masses(const Real& x, const Real& v, std::size_t count, Of&& of
   return {double(Real(kinetic / 2)), double(Real(x * x / 2)), double(Real(walls / 2)),
           double(Real((paper + x * x) / 2))};
 }
-// Returns the kinetic energy of a secondary mass.
+// Returns the kinetic energy of a secondary mass, where x' = v and y' = w.
 template <class Real>
 double kinetic_energy(const Real& nu, const Real& v, const Real& w) {
   const Real z1 = v + w;
   return double(Real(nu * z1 * z1 / 2));
 }
 
-// The same for a single damper. depth: of the secondary mass in a compliant wall.
+// Returns the energy of the primary mass and a single secondary mass. depth: of the latter in a compliant
+// wall.
 template <class Real, class Force>
 Energy energy_of(const System<Real, Force>& system, const State<Real>& s, const Real& depth) {
   return energy_of_masses(s.x, s.v, 1, [&](std::size_t) {
