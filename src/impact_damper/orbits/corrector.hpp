@@ -17,14 +17,15 @@
 
 namespace impact_damper::corrector {
 
+// Returns what is wrong with the options; empty if nothing.
 std::vector<Problem> problems_of(const OrbitOptions& options);
 
 using Point = Vector;  // the components of a state, then the parameter
 
 Point along(const Point& from, double step, const Point& direction);  // from + step direction
-double distance(const Point& a, const Point& b);
-double largest(const StateVector& s);  // the largest modulus of a component
-StateVector state_at(Point p);
+double distance(const Point& a, const Point& b);                      // the Euclidean one
+double largest(const StateVector& s);                                 // the largest modulus of a component
+StateVector state_at(Point p);                                        // p without the parameter
 Point point_at(StateVector s, double parameter);
 
 // The equation H^n(s; p) - s = 0, n = half_periods, for states s and values of one parameter p.
@@ -44,13 +45,14 @@ struct Equation {
   std::vector<std::size_t> free_to_rest(const PoincareImage& image) const {
     return half_periods % 2 == 0 ? image.idle : std::vector<std::size_t>{};
   }
-  // Nearest misses are looked for on orbits only.
+  // Returns H^n(s; p), or the budget that ended the run before. The nearest miss is looked for only where the
+  // residual is at most twice the tolerance, as on an orbit.
   Expected<PoincareImage, StopReason> image_of(const Point& p, PoincareMap::Derivatives wanted) const {
     const double misses_within = 2 * options.tolerance * std::max(1.0, largest(state_at(p)));
     return PoincareMap(scene_at(p.back()), engine, half_periods)(state_of(state_at(p)), wanted,
                                                                  misses_within);
   }
-  // Whether a scene may have the iterate's parameter, and no component of its state exceeds 1e12.
+  // Whether a scene may have the parameter of p, and no component of its state exceeds 1e12.
   bool allows(const Point& p) const {
     for (const SceneField& field : scene_fields)
       if (field.number.is(member_of(parameter)) &&
@@ -69,19 +71,25 @@ struct Plane {
 // The plane on which the parameter has the value that it has in p.
 Plane at_value(const Point& p);
 
+// A point, its image, and the plane on which it was looked for.
 struct Solution {
   Point point;
   PoincareImage image;
-  Multipliers multipliers;  // only of one that the corrector has found
+  // Only of one that the corrector has found. residuals: those of all iterates, in units of
+  // OrbitOptions::tolerance.
+  Multipliers multipliers;
   std::vector<double> residuals;
   Plane plane;
 };
 using Solved = Expected<Solution, NoOrbit>;
 
-// Solves H^n(s) = s on a plane by Newton's method from `start`, which was predicted from `before`.
+// Solves H^n(s; p) = s on a plane by Newton's method (M13.10) from `start`, which was predicted from
+// `before`. Where an impact passes phase 0 between these, or between two iterates, iterate and plane are
+// carried across it (M13.13). Returns why there is no solution otherwise.
 Solved solve(const Equation& equation, const Point& before, const Point& start, const Plane& plane);
 
-// The bordered matrix of (M13.11): the derivative of H^n(s) - s by s and the parameter, and a last row.
+// The bordered matrix of (M13.11): the derivative of H^n(s; p) - s by s and the parameter, and `last` as the
+// last row. In the row of w of each damper of free_to_rest() stands (M13.28).
 Matrix bordered(const Equation& equation, const PoincareImage& image, const Point& last);
 
 // The residual H^m(s) - s, m = half_periods, in which idle dampers count as staying where they rest; nothing
@@ -90,7 +98,7 @@ std::optional<StateVector> residual_after(const Equation& equation, const Point&
 
 Multipliers multipliers_of(const PoincareImage& image);  // without those of idle dampers
 // The unit eigenvector of A for its eigenvalue next to -1, by inverse iteration; nothing if that fails. Idle
-// dampers stay where they rest.
+// dampers stay where they rest: their y + x and y' + x' in it are 0.
 std::optional<StateVector> eigenvector_of_minus_1(const PoincareImage& image);
 
 // The orbit of a solution. Of a symmetric one the solution is half, and its mirror image the other half.

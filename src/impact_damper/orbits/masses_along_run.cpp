@@ -7,8 +7,8 @@ namespace impact_damper {
 namespace {
 
 // All intervals of contact of a run, with those that end with it, in the order of `first`. A mass whose
-// chattering is complete sticks from the impact at which the limit is taken. scene: that of the run, but for
-// initial condition and end.
+// chattering is complete sticks from the impact at which the limit is taken. scene: that of the run,
+// except for initial condition and end.
 std::vector<ContactInterval> contact_intervals(const Scene& scene, const RecordedRun& run, bool rigid) {
   const MotionChain& chain = run.chain;
   std::vector<ContactInterval> all;

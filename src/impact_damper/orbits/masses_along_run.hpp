@@ -1,6 +1,6 @@
-// The masses of a run as its record has them, event by event: what the variational equations and the search
-// for near misses go by. x and x' at the end of each motion and y' at each impact are the run's; y and y' of
-// all masses follow from these.
+// The state of all masses at the events of a recorded run, one event after the other, for the variational
+// equations and the search for the nearest miss. The record has x and x' at the end of each motion, and y'
+// before each impact; y and y' of the other masses follow from these (docs/mathematics.md, 13.10).
 #pragma once
 
 #include <cstddef>
@@ -18,6 +18,8 @@ namespace impact_damper {
 
 using UnforcedModes = ContactModes<double, NoForcing<double>>;
 
+// The coefficients of the variational equations: those of a scene with the engine exact or restitution, the
+// same for all of its runs.
 struct VariationalCoefficients {
   struct OfDamper {
     double nu, e, clearance;
@@ -52,42 +54,54 @@ struct VariationalCoefficients {
   std::vector<OfDamper> dampers;
 };
 
+// For each motion n of the run, from 0, the caller calls comes_to_rigid_event(n) and, if that is true,
+// pass_rigid_event(n), or with compliant walls come_to_compliant_events(n) and pass_compliant_events(n). Then
+// it advances y and y' of the masses in flight to the end of the motion, as far as it needs them, and calls
+// pass(motion).
 class MassesAlongRun {
  public:
   struct Mass {
     double y, w;
-    int wall = 0;  // ContactInterval::away while it is in contact, else 0
-    int wall_before = 0;
+    int wall = 0;                    // ContactInterval::away while it sticks or is in contact, else 0
+    int wall_before = 0;             // the same before the last event at rigid walls
     std::size_t end_of_contact = 0;  // ContactInterval::last of that contact
-    // What the last event at rigid walls did to it. is_active: it got an impulse from its wall (M17.3).
+    // Whether at the last event at rigid walls it had an impact, stuck from then on, got an impulse from its
+    // wall (M17.3).
     bool meets = false, joins = false, is_active = false;
   };
 
+  // Both must outlive this object.
   MassesAlongRun(const VariationalCoefficients& of, const RecordedRun& run);
 
-  // Come to the motion n, which follows the one that was passed, and to the events between both. With rigid
-  // walls an event is the impacts together with the sticking that begins; the end of sticking changes
-  // nothing, as the mass has no relative speed.
-  bool comes_to_rigid_event(std::size_t n);  // takes contacts if there is none
-  void pass_rigid_event(std::size_t n);      // that one
+  // Whether there is an event at rigid walls between the motions n - 1 and n: impacts, or sticking that
+  // begins. If so, finds which masses it acts on; x', y' and `wall` are still those before. If not, ends the
+  // sticking that ends there, which changes no speed.
+  bool comes_to_rigid_event(std::size_t n);
+  // Applies that event to x', y, y' and `wall` of all masses.
+  void pass_rigid_event(std::size_t n);
+  // Sets `impacts` and `continued` for the events at compliant walls between the motions n - 1 and n: touches
+  // and ends of contacts, for which ends_contact() is true.
   void come_to_compliant_events(std::size_t n);
+  // Sets y and y' of the masses of these events, and ends and begins their contacts.
   void pass_compliant_events(std::size_t n);
+  // Sets x and x' to those at the end of a motion.
   void pass(const MotionChain::Motion& motion) { x = motion.x, v = motion.v; }
 
+  // Whether the i-th mass is in contact until the motion n begins.
   bool ends_contact(std::size_t i, std::size_t n) const {
     return masses[i].wall != 0 && masses[i].end_of_contact == n;
   }
   double position_of_wall(std::size_t i) const { return masses[i].wall > 0 ? 0 : of_.dampers[i].clearance; }
-  // The primary mass and all that sticks to it.
+  // The primary mass and all that sticks to it, divided by the primary mass.
   double joined_mass() const;
 
   double x, v;
   std::vector<Mass> masses;
-  std::vector<std::size_t> in_contact;           // of the motion that was come to
+  std::vector<std::size_t> in_contact;           // masses whose `wall` is not 0, ascending
   std::vector<ContactInterval> contacts;         // of the whole run
-  std::span<const MotionChain::Impact> impacts;  // of the events that were come to
+  std::span<const MotionChain::Impact> impacts;  // between the motions n - 1 and n
   double active_mass = 1;  // at the last rigid event: 1 plus the mass ratios that are active
-  bool continued = false;  // no event came before this motion: flights go on
+  bool continued = false;  // no event lies between the motions n - 1 and n: flights go on
 
  private:
   void come_to(std::size_t n);

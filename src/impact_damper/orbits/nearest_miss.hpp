@@ -7,7 +7,8 @@
 
 namespace impact_damper {
 
-// Returns the least distance from a wall at which a mass turns back in flight; nothing if none does.
+// Returns the least distance from a wall, divided as in run.hpp, at which a mass turns back in flight: y'
+// changes its sign there without an impact (docs/mathematics.md, 13.10). Nothing if no mass does.
 std::optional<double> nearest_miss(const VariationalCoefficients& of, const RecordedRun& run);
 
 }  // namespace impact_damper

@@ -229,7 +229,7 @@ class VariationalEquations {
                                             : event.share;
     }
   }
-  // What (M13.23) and (M13.24) take from y and y' of a mass that flies on, but for its own impact.
+  // What (M13.23) and (M13.24) take from y and y' of a mass that flies on, except for its own impact.
   struct Taken {
     double y = 0, gained = 0, joined = 0;
   };

@@ -29,6 +29,7 @@ struct ContactInterval {
   bool from_beginning;         // no event of this run began it
 };
 
+// What is known of a run after its changes have been carried along.
 struct Carried {
   std::vector<ContactInterval> contacts;  // of the run, with those that end with it, in the order of `first`
   // Largest number of dimensions lost at one time: two for each mass that sticks, or whose contact is damped
@@ -38,22 +39,23 @@ struct Carried {
   // them together.
   bool one_sided = false;
 };
-// The derivatives of the final state by omega_f and by f0, and its rates.
+// The derivatives of the final state by omega_f and by f0, for a fixed end time, and its rates.
 struct AlongRun {
   ChangeOfState by_frequency, by_amplitude;
   ChangeOfState rates_at_end;  // x', x'', then y' and y'' of each damper, before any event at that instant
 };
 
-// The coefficients of the variational equations of a scene.
+// The coefficients of the variational equations of a scene (masses_along_run.hpp).
 struct VariationalCoefficients;
-// The engine is exact or restitution, and the scene has a force.
+// Returns them. The engine must be exact or restitution, and the scene must have a force.
 std::shared_ptr<const VariationalCoefficients> variational_coefficients(const Scene& scene,
                                                                         const Engine& engine);
 
 // Solves the variational equations: replaces each change of a run's initial state by what it has become at
-// the run's end, which its time has come to. after_step(), if given, is called after each event that acts on
-// changes and after each motion; a motion that contracts volumes to less than 1/e is then taken in pieces. It
-// may replace the changes by others that span the same directions. `along` is filled in if it is not null.
+// the run's end. The run must have ended by its time (StopReason::time). after_step(), if not empty, is
+// called after each event that acts on changes and after each motion, and may replace the changes by others
+// that span the same directions; a motion that contracts volumes to less than 1/e is then taken in pieces.
+// `along` is filled in if it is not null.
 Carried carry_changes(const VariationalCoefficients& of, const RecordedRun& run,
                       std::vector<ChangeOfState>& changes, const std::function<void()>& after_step,
                       AlongRun* along = nullptr);

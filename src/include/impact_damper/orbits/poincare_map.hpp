@@ -43,8 +43,8 @@ struct PoincareImage {
   std::int64_t sticking = 0;
   // Numbers of the dampers with neither impact nor contact while others have impacts.
   std::vector<std::size_t> idle;
-  // Whether several masses met rigid walls at one instant. The derivative is then that of changes
-  // that keep them together.
+  // Whether several masses met rigid walls at one instant. The derivative is then that of changes that keep
+  // them together.
   bool one_sided = false;
   // How near the motion is to grazing, where the derivative by s has no bound (rigid walls) or jumps
   // (compliant walls), and to a coincidence of impacts. Each is absent where the motion has no such event.
@@ -61,8 +61,8 @@ struct VariationalCoefficients;
 // the fourth power of their number, and takes seconds at this one.
 inline constexpr std::size_t most_dampers_with_changes = 100;
 
-// The scene with the end of H^n, n = half_periods, and at rest, as its initial condition is not used. Throws
-// InvalidArguments if n < 1.
+// Returns the scene that H^n simulates, n = half_periods: with its end at n pi / omega_f. Its initial
+// condition, which is not used, is at rest. Throws InvalidArguments if n < 1.
 Scene scene_of_map(Scene scene, int half_periods);
 
 // The map H^n of a scene, n = half_periods, and its derivatives.
@@ -72,12 +72,12 @@ class PoincareMap {
   // there is no force, or the engine is cem. The scene's initial condition and its end are not used.
   PoincareMap(const Scene& scene, const Engine& engine, int half_periods);
 
-  // With none, an image has its state and its idle dampers only.
+  // Which derivatives an image has. With none, it has its state and its idle dampers only.
   enum class Derivatives { none, by_state, by_state_and_parameters };
   // The image of s, or the budget that ended the run before. s: the state at phase 0 of the force, with as
   // many dampers as the scene has, which is not checked. With rigid walls a mass lies between them: y from 0
-  // to 1, or to its clearance.
-  // misses_within: the nearest miss is looked for only where no component of H^n(s) - s exceeds it.
+  // to its clearance. misses_within: the nearest miss is looked for only where no component of H^n(s) - s
+  // exceeds it.
   Expected<PoincareImage, StopReason> operator()(
       const SceneState& s, Derivatives wanted = Derivatives::by_state,
       double misses_within = std::numeric_limits<double>::infinity()) const;
