@@ -97,7 +97,7 @@ std::optional<bool> is_balanced(const SteadyState& steady);
 // run.
 std::vector<Problem> problems_of(const Scene& scene, const Engine& engine);
 
-// A run in its motions and events, from which its derivative follows (variation.hpp).
+// A run in its motions and events, from which its derivative follows (orbits/variational_equations.hpp).
 struct RecordedRun {
   StopReason stop_reason = StopReason::time;
   double end_time = 0;
@@ -137,7 +137,7 @@ class ForcedScene {
   Expected<Watched, StopReason> pass_periods(const SceneState& state) const;
   // All of Watched, with the states half way and at the end, after `periods` periods.
   Expected<Watched, StopReason> watch(const SceneState& state, std::int64_t periods) const;
-  // The run from phase 0 until a time.
+  // Records the run from a state at phase 0 until the time `until`, or until a budget of the engine ends it.
   RecordedRun record(const SceneState& state, double until) const;
   double period() const { return period_; }  // of the force, 2 pi / omega_f
 

@@ -101,8 +101,7 @@ struct Basin {
 
 // The steady motion of each point of the map over two axes. A point is decided as soon as
 // - each secondary mass is at rest in space where x cannot reach it any more (M14.5), which is idle, or
-// - over initial values: it is within the capture radius of a known motion, and nearer to it a period of
-// that
+// - over initial values: it is within the capture radius of a known motion, and nearer to it a period of that
 //   motion later. Known are those that a coarse grid of points ends in, each followed until it is steady by
 //   `rule`; or
 // - it is steady by `rule`.
