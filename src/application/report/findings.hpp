@@ -26,7 +26,7 @@ struct Subject {
   Engine engine;
 };
 
-// The time at which the amplitude first was below a fraction of the first one (time_below.hpp).
+// The time at which the amplitude first was below a fraction of the first one (regimes.hpp).
 struct Fall {
   double part = 0;
   double amplitude = 0;         // part times the first amplitude

@@ -97,7 +97,7 @@ std::optional<bool> is_balanced(const SteadyState& steady);
 // run.
 std::vector<Problem> problems_of(const Scene& scene, const Engine& engine);
 
-// A run in its motions and events, from which its derivative follows (variation.hpp).
+// A run in its motions and events, from which its derivative follows (variational_equations.hpp).
 struct RecordedRun {
   StopReason stop_reason = StopReason::time;
   double end_time = 0;
