@@ -1,5 +1,3 @@
-#include "measurements.hpp"
-
 #include <cstdlib>
 #include <new>
 #include <stdexcept>
@@ -7,6 +5,7 @@
 #include "impact_damper/engines/exact.hpp"
 #include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/engines/restitution.hpp"
+#include "measurements.hpp"
 #include "quiet_observer.hpp"
 
 namespace {

@@ -1,5 +1,3 @@
-#include "measurements.hpp"
-
 #include <map>
 
 #include "application/reproduction/catalogue.hpp"
@@ -7,6 +5,7 @@
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
+#include "measurements.hpp"
 
 namespace impact_damper::bench {
 namespace {

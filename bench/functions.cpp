@@ -1,11 +1,10 @@
-#include "measurements.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
 #include "impact_damper/math/elementary.hpp"
+#include "measurements.hpp"
 
 namespace impact_damper::bench {
 namespace {

@@ -1,10 +1,9 @@
-#include "measurements.hpp"
-
 #include <cmath>
 
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/engines/exact.hpp"
 #include "impact_damper/engines/restitution.hpp"
+#include "measurements.hpp"
 #include "quiet_observer.hpp"
 
 namespace impact_damper::bench {

@@ -1,5 +1,5 @@
-// A scene of one damper in half its unit of length, where the engines of lists run it, and the run of that list
-// in the scene's own units. A factor of 2 changes no bit but the exponent.
+// A scene of one damper in half its unit of length, where the engines of lists run it, and the run of that
+// list in the scene's own units. A factor of 2 changes no bit but the exponent.
 #pragma once
 
 #include <vector>
@@ -35,10 +35,9 @@ inline impact_damper::Run in_its_own_units(impact_damper::Run run) {
   }
   if (run.energy) {
     impact_damper::EnergyBalance& all = *run.energy;
-    for (double* energy :
-         {&all.initial.kinetic, &all.initial.spring, &all.initial.wall, &all.initial.paper, &all.final.kinetic,
-          &all.final.spring, &all.final.wall, &all.final.paper, &all.contact_loss, &all.bounce_down_loss,
-          &all.viscous_work, &all.forcing_work})
+    for (double* energy : {&all.initial.kinetic, &all.initial.spring, &all.initial.wall, &all.initial.paper,
+                           &all.final.kinetic, &all.final.spring, &all.final.wall, &all.final.paper,
+                           &all.contact_loss, &all.bounce_down_loss, &all.viscous_work, &all.forcing_work})
       *energy /= 4;
     for (double& loss : all.impact_loss) loss /= 4;
     for (impact_damper::DamperEnergy& its : all.dampers)

@@ -2,7 +2,8 @@
 """What the text of sources and documents must be.
 
     sources.py includes     each source has what it uses of the C++ standard library from a header that it or a header of this
-                            project includes, not from whatever this compiler's standard library includes in its own headers
+                            project includes, not from whatever this compiler's standard library includes in its own headers;
+                            each header of this project that is named is there, also by sources that only the bench compiles
     sources.py links        every relative link of every Markdown file leads to a file of the project, and every anchor to a
                             heading. Not of the sources of the report: its links are followed in a browser
     sources.py equations    every equation (M7.2) and lemma (L2) that the code cites stands in docs/mathematics.md, and each of
@@ -31,7 +32,7 @@ def text_of(file: Path) -> str:
 
 
 # includes
-FOLDERS = [SOURCE / folder for folder in ("src", "src/include", "src/application/cli", "tests", "tests/mutation", "tests/stress", "bench")]
+FOLDERS = [SOURCE / folder for folder in ("src", "src/include", "src/application/cli", "tests", "tests/mutation", "tests/oracle", "tests/stress", "bench")]
 ALGORITHMS = ("all_of any_of binary_search clamp copy copy_if copy_n count count_if equal equal_range fill fill_n find find_if generate "
               "is_sorted lower_bound max max_element merge min min_element minmax minmax_element mismatch none_of nth_element "
               "partial_sort partition remove_if replace reverse rotate set_difference shuffle sort stable_sort transform unique upper_bound")
@@ -97,6 +98,9 @@ def includes():
     faults = [f"{file.relative_to(SOURCE)}: <{header}> is not included, for {used[0]}" for file in files
               for header, names in NAMES.items() if header not in included(file)
               and (used := re.search(names, code(file)))]
+    faults += [f"{file.relative_to(SOURCE)}: {name}: there is no such header" for file in files
+               for name in re.findall(r'^ *#include "(.*?)"', text_of(file), re.M)
+               if not any((folder / name).exists() for folder in (file.parent, *FOLDERS))]
     return faults, len(files) >= 100, f"{len(files)} sources"
 
 

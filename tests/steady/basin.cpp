@@ -1,6 +1,4 @@
 // Maps of what points end in, against each point followed by itself.
-#include "impact_damper/steady/sweep.hpp"
-
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 
 #include "impact_damper/responses/response_file.hpp"
 #include "impact_damper/simulate.hpp"
+#include "impact_damper/steady/sweep.hpp"
 
 namespace {
 

@@ -1,5 +1,3 @@
-#include "impact_damper/orbits/variational_equations.hpp"
-
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 #include "engines/observed.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/orbits/lyapunov.hpp"
+#include "impact_damper/orbits/variational_equations.hpp"
 #include "impact_damper/simulate.hpp"
 #include "impact_damper/steady/steady_state.hpp"
 #include "reference.hpp"

@@ -129,11 +129,6 @@ std::string with_values(std::string_view pattern, const std::vector<std::string>
   return text.append(pattern);
 }
 
-std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known) {
-  const auto meant = nearest(word, known);
-  return meant ? ", did you mean " + std::string(*meant) + "?" : "";
-}
-
 std::optional<std::vector<double>> parse_numbers(std::string_view text, char between) {
   std::vector<double> numbers;
   for (const std::string_view part : parts_of(text, between)) {

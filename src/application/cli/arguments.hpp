@@ -101,8 +101,6 @@ std::vector<std::string_view> texts_of(const Elements& elements, Text text) {
   for (const auto& element : elements) texts.push_back(std::invoke(text, element));
   return texts;
 }
-// Returns ", did you mean WORD?", or "" if none of these words is meant.
-std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known);
 
 // A text with a place {} for each of these values.
 template <class... Values>

@@ -55,9 +55,8 @@ const Unit* unit_of(std::span<const Unit> units, const std::string& heading, Pro
   if (found != units.end()) return &*found;
   std::vector<std::string_view> known(units.size());
   std::ranges::transform(units, known.begin(), &Unit::heading);
-  const auto meant = nearest(heading, known);
   problems.add(1, "a column must be headed " + listed(known, "or") + ", got " + in_quotes(heading) +
-                      (meant ? ", did you mean " + std::string(*meant) + "?" : ""));
+                      did_you_mean(heading, known));
   return nullptr;
 }
 

@@ -29,7 +29,8 @@ Spread time_saved(const Asked& asked) {
   for (const Run& run : asked.runs.ensemble(asked.call.scenes.back()))
     theirs.push_back(peak_time_below(run, amplitude));
   const double reference = spread_of(theirs).median;
-  for (const Run& run : asked.ensemble()) saved.push_back(100 * (1 - peak_time_below(run, amplitude) / reference));
+  for (const Run& run : asked.ensemble())
+    saved.push_back(100 * (1 - peak_time_below(run, amplitude) / reference));
   return spread_of(saved);
 }
 
@@ -305,7 +306,7 @@ double stuck_damping(const Asked& asked) {
   scene.damper().wall_stiffness = 1e6;
   scene.x0 = -6;
   scene.until_time = 1;
-  const Run run = simulate(scene, Exact{}, {.contacts = true, .history = {{0, 1, 1001}}});
+  const Run run = asked.runs.simulated(scene, Exact{}, {.contacts = true, .history = {{0, 1, 1001}}});
   const History& h = *run.history;
   const double omega_s = 1 / std::sqrt(1 + scene.damper().mass_ratio);
   return -stuck_coefficient(

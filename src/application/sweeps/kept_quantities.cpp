@@ -337,10 +337,9 @@ QuantityReading read_quantity(std::string_view text) {
   if (found == quantities.end()) {
     std::vector<std::string_view> names(quantities.size());
     std::ranges::transform(quantities, names.begin(), &Quantity::name);
-    const auto meant = nearest(name, names);
-    return {{},
-            "must name a quantity (sweep --list-quantities), got " + in_quotes(text) +
-                (meant ? ", did you mean " + std::string(*meant) + "?" : "")};
+    return {
+        {},
+        "must name a quantity (sweep --list-quantities), got " + in_quotes(text) + did_you_mean(name, names)};
   }
   KeptQuantity kept{found, {}};
   if (!found->at) {

@@ -75,8 +75,7 @@ bool is_altered(const std::string& file, const std::string& line) {
 }
 constexpr const char* altered =
     "is altered: its lines, or their ends, are not as they were written; remove it, and the command that "
-    "made "
-    "it makes it again";
+    "made it makes it again";
 
 std::string digest_line(std::int64_t rows, const Sha256& hash) {
   return "# " + std::to_string(rows) + ' ' + hash.digest();

@@ -173,4 +173,9 @@ std::optional<std::string_view> nearest(std::string_view word, const std::vector
   return std::nullopt;
 }
 
+std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known) {
+  const auto meant = nearest(word, known);
+  return meant ? ", did you mean " + std::string(*meant) + "?" : "";
+}
+
 }  // namespace impact_damper

@@ -45,5 +45,7 @@ std::string in_lower_case(std::string_view text);  // ASCII
 // exciting_force). Options and keys count as the same, "--mass-ratio" as "mass_ratio"; capitals decide only
 // between words that are equally near without them. Absent if there is none.
 std::optional<std::string_view> nearest(std::string_view word, const std::vector<std::string_view>& known);
+// Returns ", did you mean WORD?" with that word, or "" if there is none.
+std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known);
 
 }  // namespace impact_damper
