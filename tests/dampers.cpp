@@ -171,6 +171,15 @@ Distance mean_distance(const Scene& scene, const Run& reference, Cem options, do
 Run reference_of(const Scene& scene) {
   return oracle::run_of_oracle(scene, oracle::Walls::compliant, oracle::Fault::none, samples);
 }
+// The exact engine's run has the reference's motion and energy to rounding.
+Distance check_exact(const Run& run, const Run& reference) {
+  const Distance far = distance(run, reference);
+  CHECK(far.x < 1e-13);
+  CHECK(far.y < 1e-12);
+  CHECK(far.viscous < 1e-13);
+  CHECK(far.residual < 1e-14);
+  return far;
+}
 // Enough happens in the reference: the three that are in contact at once, or both, and many impacts.
 void check_eventful(const Run& reference) {
   const Contacts& contacts = *reference.contacts;
@@ -589,13 +598,9 @@ TEST_CASE("several dampers move as their Taylor series says") {
   for (const Scene& scene : {four, two_shaken}) {
     const Run reference = reference_of(scene);
     check_eventful(reference);
-    const Distance far = distance(run_of(scene, Exact{}), reference);
-    CHECK(far.x < 1e-13);
-    CHECK(far.y < 1e-12);
+    const Distance far = check_exact(run_of(scene, Exact{}), reference);
     CHECK(far.impacts < 1e-11);
     CHECK(far.losses < 1e-13);
-    CHECK(far.viscous < 1e-13);
-    CHECK(far.residual < 1e-14);
   }
 }
 
@@ -610,12 +615,7 @@ TEST_CASE("several that press their walls until these ring no more leave them wh
   fast.force_amplitude = 3, fast.force_frequency = 7;
   for (const Scene& each : {scene, shaken, fast}) {
     const Run run = run_of(each, Exact{});
-    const Run reference = reference_of(each);
-    const Distance far = distance(run, reference);
-    CHECK(far.x < 1e-13);
-    CHECK(far.y < 1e-12);
-    CHECK(far.viscous < 1e-13);
-    CHECK(far.residual < 1e-14);
+    check_exact(run, reference_of(each));
     REQUIRE(run.contacts->end.size() > 3);
     CHECK(run.contacts->begin.front() == 0);
     CHECK(run.contacts->end.front() > 0.4);
@@ -629,14 +629,7 @@ TEST_CASE("walls far faster than others that are pressed with them follow these,
                    damper(0.02, 0.5, 2, 70, 0, 0)};
   Scene shaken = scene;
   shaken.force_amplitude = 3, shaken.force_frequency = 7;
-  for (const Scene& each : {scene, shaken}) {
-    const Run run = run_of(each, Exact{});
-    const Run reference = reference_of(each);
-    const Distance far = distance(run, reference);
-    CHECK(far.x < 1e-13);
-    CHECK(far.y < 1e-12);
-    CHECK(far.residual < 1e-14);
-  }
+  for (const Scene& each : {scene, shaken}) check_exact(run_of(each, Exact{}), reference_of(each));
   // The fast wall alone would take 2e6 pieces for each unit of time. It rings for some hundreds of them.
   scene.until_time = 20;
   scene.dampers = {damper(0.02, 0.3, 1, 1e4, 0, 0), damper(1e-9, 0.6, 1, 1e4, 0, 0)};
