@@ -2,7 +2,7 @@
 #include <functional>
 #include <thread>
 
-#include "application/sweeps/plan_file.hpp"
+#include "application/sweeps/plan.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/parallel.hpp"
