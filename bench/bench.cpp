@@ -140,8 +140,9 @@ int bench(const Arguments& arguments) {
   Findings found{.processor = processor(), .scenes = bench_scenes(), .missing_peers = missing_peers()};
   for (const std::string& peer : found.missing_peers) tell("Not in this build: " + peer);
   if (!only.empty()) {
-    std::erase_if(found.scenes,
-                  [&](const BenchScene& scene) { return std::ranges::find(only, scene.name) == only.end(); });
+    std::erase_if(found.scenes, [&only = only](const BenchScene& scene) {
+      return std::ranges::find(only, scene.name) == only.end();
+    });
   }
   measure_curves(limits, found);
   if (only.empty()) {

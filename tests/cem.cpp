@@ -681,9 +681,10 @@ TEST_CASE("the phase of an impact counts from the zero crossing before it") {
   CHECK(checked > 50);
 }
 
-// --- The paper's stuck regime (Cem::stuck_speed)
-// ------------------------------------------------------------ Against the restitution engine with e = 0,
-// whose impacts all join the masses where the wall pushes, and against integrations of its own.
+// --- The paper's stuck regime (Cem::stuck_speed) ----------------------------------------------------------
+
+// Against the restitution engine with e = 0, whose impacts all join the masses where the wall pushes, and
+// against integrations of its own.
 
 TEST_CASE("both masses move by equation (9) and part where x'' changes its sign, with second order") {
   Joined joined{pressed.damper().mass_ratio,

@@ -30,8 +30,7 @@ OWN = {"exact": ["recorded"], "restitution": ["recorded"], "cem": ["recorded"], 
 # The case that notices nearly all of them, where others of its program take far longer.
 MOSTLY = {engine: f"recorded: all that the {name} records is*"
           for engine, name in (("exact", "exact engine"), ("restitution", "restitution engine"), ("cem", "component element method"))}
-MOSTLY |= {f"{engine}-dampers": case.replace("recorded:", "recorded_dampers:").replace("records is", "records of several")
-           for engine, case in MOSTLY.items()}
+MOSTLY |= {f"{engine}-dampers": case.replace("records is", "records of several") for engine, case in MOSTLY.items()}
 FIRST = list(dict.fromkeys(sum(OWN.values(), [])))
 HEAD = """# Faults planted in what is given out, and who noticed
 

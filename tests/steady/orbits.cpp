@@ -57,8 +57,9 @@ TEST_CASE("orbits of two symmetric impacts are those of the closed form, with th
   int compared = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     reference::Random random(seed);
-    Scene scene = forced_scene(random.log_uniform(1e-4, 1), random.log_uniform(5e-3, 0.5),
-                               random.uniform(0.5, 1.6), random.log_uniform(0.05, 1));
+    const double amplitude = random.log_uniform(0.05, 1), frequency = random.uniform(0.5, 1.6),
+                 damping = random.log_uniform(5e-3, 0.5), mass = random.log_uniform(1e-4, 1);
+    Scene scene = forced_scene(mass, damping, frequency, amplitude);
     scene.damper().restitution = random.uniform(0.2, 0.9);
     for (const TwoImpactOrbit& expected : two_impact_orbits(scene)) {
       SceneState guess = expected.state;

@@ -13,8 +13,10 @@
 #include "impact_damper/simulate.hpp"
 #include "list_of_one.hpp"
 #include "reference.hpp"
+#include "same_run.hpp"
 
 using namespace impact_damper;
+using reference::farthest;
 
 namespace {
 
@@ -60,12 +62,6 @@ const BranchEvent* first_of(const Branch& branch, BranchEventKind kind) {
   return at == branch.events.end() ? nullptr : &*at;
 }
 
-double farthest(const std::vector<double>& a, const std::vector<double>& b) {
-  REQUIRE(a.size() == b.size());
-  double most = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::fabs(a[i] - b[i]));
-  return most;
-}
 bool agree(const std::optional<double>& a, const std::optional<double>& b) {
   return a.has_value() == b.has_value() && (!a || std::fabs(*a - *b) < 1e-9);
 }
@@ -77,8 +73,9 @@ TEST_CASE("the Poincare map of a list of one damper is that of the scene without
   std::array<int, 2> misses{};  // with compliant and with rigid walls
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     reference::Random random(seed);
-    Scene scene = forced_scene(random.log_uniform(1e-3, 1), random.log_uniform(1e-3, 0.5),
-                               random.uniform(0.4, 2), random.log_uniform(0.1, 3));
+    const double amplitude = random.log_uniform(0.1, 3), frequency = random.uniform(0.4, 2),
+                 damping = random.log_uniform(1e-3, 0.5), mass = random.log_uniform(1e-3, 1);
+    Scene scene = forced_scene(mass, damping, frequency, amplitude);
     scene.damper().restitution = random.uniform(0.2, 0.9);
     const bool rigid = seed % 2 == 0;
     const Engine engine = rigid ? Engine(Restitution{}) : Engine(Exact{});
@@ -145,8 +142,8 @@ TEST_CASE("the nearest miss of several dampers is that of their samples") {
     const bool rigid = seed % 2 == 0;
     const Engine engine = rigid ? Engine(Restitution{}) : Engine(Exact{});
     const double force = random.uniform(0.1, 0.6), frequency = random.uniform(0.6, 1.4),
-                 clearance = random.uniform(0.5, 3);
-    Scene scene = two_dampers(force, frequency, clearance, 0.2);
+                 second_clearance = random.uniform(0.5, 3);
+    Scene scene = two_dampers(force, frequency, second_clearance, 0.2);
     // Walls so soft that one mass often turns back while the other pushes its wall.
     for (SceneDamper& each : scene.dampers)
       each.wall_stiffness = each.mass_ratio * random.log_uniform(1, 100);

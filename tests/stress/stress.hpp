@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -38,7 +39,7 @@ struct Check {
 class Worst {
  public:
   void take(double value) {
-    if (!(value <= worst_)) worst_ = value;
+    if (!(value <= worst_) && !std::isnan(worst_)) worst_ = value;
   }
   double value() const { return worst_; }
   operator double() const { return worst_; }
