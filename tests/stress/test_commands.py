@@ -28,7 +28,7 @@ program = folder / "program"
 program.write_text("#!/bin/sh\ncase ${PWD##*-} in\n" + "".join(f"{n}) {way} ;;\n" for n, way in enumerate(WAYS)) + "esac\n")
 program.chmod(0o755)
 done = subprocess.run([sys.executable, "-B", pathlib.Path(__file__).with_name("commands.py"), program, folder / "cases", "--only",
-                       "lyapunov", "--count", str(len(WAYS)), "--timeout", "3", "--seed", "any"], capture_output=True, text=True)
-failed = [int(number) for number in re.findall(r"^FAILED lyapunov:(\d+)", done.stdout, re.MULTILINE)]
+                       "run", "--count", str(len(WAYS)), "--timeout", "3", "--seed", "any"], capture_output=True, text=True)
+failed = [int(number) for number in re.findall(r"^FAILED run:(\d+)", done.stdout, re.MULTILINE)]
 print(done.stdout, done.stderr)
 sys.exit(done.returncode != 1 or failed != list(range(1, len(WAYS))))
