@@ -177,7 +177,7 @@ stress-commands:  ## random scenes of every command that simulates, under the sa
 kills:  ## kill run, series, drawing, verify and make figures 110 times (minutes)
 	@$(alone) $(with_tests) cmake --build $(BUILD) --target kills
 
-check: test  ## make test; then the exact engine's figures, and its results held against the paper (three minutes after the build)
+check: test  ## make test; then the exact engine's figures, and its results held against the paper (five minutes after the build)
 	@$(MAKE) --no-print-directory figures verify ENGINE=exact
 
 check-long:  ## what make check leaves out: the tests with the label long, the other engines' figures (some twenty minutes)
