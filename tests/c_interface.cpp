@@ -176,8 +176,7 @@ TEST_CASE("every number of a run file is a column for C, with the same bits") {
     CAPTURE(name);
     impact_damper_run* run = nullptr;
     REQUIRE(impact_damper_simulate(scene, name, &window, &run, nullptr, 0) == IMPACT_DAMPER_DONE);
-    Record record{.impacts = true, .contacts = true, .energy = true};
-    record.history = {{0, 50, 101}};
+    const Record record{.impacts = true, .contacts = true, .energy = true, .history = {{0, 50, 101}}};
     const SceneFile read = parse_scene_file("scene", scene);
     const std::string wanted = run_text(simulate(read.scene, engine, record), read.scales);
     char* const text = impact_damper_run_text(run);

@@ -251,8 +251,7 @@ TEST_CASE("a pressed contact rings up just above the limit and dies away just be
 }
 
 TEST_CASE("a step beyond the stability limit is rejected with the step, the limit and the way out") {
-  Scene scene;
-  scene.until_time = 1;
+  const Scene scene{.until_time = 1};
   for (Damper damper : {Damper::centred, Damper::lagged}) {
     const double limit = stability_limit(scene, damper, Calibration::fixed_wall);
     CHECK_NOTHROW(simulated(scene, {.time_step = limit, .damper = damper}, {}));
@@ -277,8 +276,7 @@ TEST_CASE("a step beyond the stability limit is rejected with the step, the limi
 }
 
 TEST_CASE("an unstable run that overflows ends in a numerical failure") {
-  Scene scene;
-  scene.until_time = 1e5;
+  const Scene scene{.until_time = 1e5};
   CHECK_THROWS_AS(simulated(scene, {.time_step = 2.1, .unstable = true}, everything()), NumericalError);
 }
 
@@ -340,8 +338,7 @@ TEST_CASE("half cycles have the closed form's crossings and amplitudes, to secon
 }
 
 TEST_CASE("released from rest the first amplitude is the release, at time 0") {
-  Scene scene;
-  scene.until_time = 10;
+  const Scene scene{.until_time = 10};
   const Run run = simulated(scene, {}, {});
   CHECK(run.half_cycles->amplitude[0] == 6);
   CHECK(run.half_cycles->peak_time[0] == 0);

@@ -14,15 +14,12 @@ namespace {
 
 // Everything recorded; damped and forced where that is asked for. Bounces, sticking and single impacts.
 Run full_run(const Engine& engine, bool driven) {
-  Scene scene;
-  scene.until_time = 40;
+  Scene scene{.until_time = 40};
   if (driven) {
     scene.damping_ratio = 0.02;
     scene.force_amplitude = 0.1;
   }
-  Record record;
-  record.impacts = record.contacts = record.energy = true;
-  record.history = {{0, 40, 1001}};
+  const Record record{.impacts = true, .contacts = true, .energy = true, .history = {{0, 40, 1001}}};
   return simulate(scene, engine, record);
 }
 
@@ -191,17 +188,11 @@ const std::vector<Alteration> of_any_engine{
 
 // Three dampers, two of them alike, so that impacts coincide; none sticks.
 Run run_of_several(const Engine& engine = Restitution{}) {
-  Scene scene;
-  scene.x0 = 1;
-  scene.damping_ratio = 0.01;
-  scene.force_amplitude = 0.1;
-  scene.until_time = 40;
+  Scene scene{.damping_ratio = 0.01, .x0 = 1, .force_amplitude = 0.1, .until_time = 40};
   const SceneDamper one{.restitution = 0.9, .y0 = 0.5};
   scene.dampers = {
       one, {.mass_ratio = 0.01, .restitution = 0.95, .clearance = 0.3, .y0 = 0.2, .w0 = 0.1}, one};
-  Record record;
-  record.impacts = record.contacts = record.energy = true;
-  record.history = {{0, 40, 1001}};
+  const Record record{.impacts = true, .contacts = true, .energy = true, .history = {{0, 40, 1001}}};
   return simulate(scene, engine, record);
 }
 
@@ -298,8 +289,7 @@ const std::vector<Alteration> of_several_dampers{
 }  // namespace
 
 TEST_CASE("an alteration of any number that follows from others is found, whatever the engine") {
-  Cem steps;
-  steps.locate = true;
+  const Cem steps{.locate = true};
   for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{}), Engine(Cem{}), Engine(steps)}) {
     for (const bool driven : {false, true}) {
       CAPTURE(name_of(engine));
@@ -369,11 +359,8 @@ TEST_CASE("an alteration of a work is found, even where the residual's divisor i
 }
 
 TEST_CASE("a run that ends by an amplitude or a budget agrees with itself") {
-  Scene scene;
-  scene.until_time = 100;
-  scene.until_amplitude = 5.8;
-  Record record;
-  record.impacts = record.contacts = record.energy = true;
+  const Scene scene{.until_time = 100, .until_amplitude = 5.8};
+  const Record record{.impacts = true, .contacts = true, .energy = true};
   for (Engine engine : {Engine(Exact{}), Engine(Restitution{}), Engine(Cem{})}) {
     std::visit([](auto& options) { options.max_steps = 40; }, engine);
     Scene forced = scene;

@@ -283,10 +283,7 @@ TEST_CASE("errors that are the same in every short contact are well below a roun
     for (double e : {0.6, 1.0}) {
       for (double stiffness : {1.3e4, 1e6, 1e8}) {
         for (bool driven : {false, true}) {
-          Scene scene;
-          scene.damper().mass_ratio = nu;
-          scene.damper().restitution = e;
-          scene.damper().wall_stiffness = stiffness * nu;
+          Scene scene{.dampers = {{.mass_ratio = nu, .restitution = e, .wall_stiffness = stiffness * nu}}};
           if (driven) scene.damping_ratio = 0.02, scene.force_amplitude = 1, scene.force_frequency = 0.9;
           const CommonError error = common_error(scene);
           CAPTURE(nu);
@@ -306,10 +303,7 @@ TEST_CASE("errors that are the same in every short contact are well below a roun
 TEST_CASE("a single impact delivers the restitution of the effective damping ratio zeta_m sqrt(1 + nu)") {
   for (double nu : {1e-6, 0.02, 0.3, 5.0}) {
     for (double e : {0.2, 0.6, 0.9, 1.0}) {
-      Scene scene;
-      scene.damper().mass_ratio = nu;
-      scene.damper().restitution = e;
-      scene.damper().wall_stiffness = 1e14;
+      const Scene scene{.dampers = {{.mass_ratio = nu, .restitution = e, .wall_stiffness = 1e14}}};
       const double z = zeta_m_closed_form(e) * std::sqrt(1 + nu);
       if (z > 0.99) continue;
       CAPTURE(nu);
@@ -326,8 +320,7 @@ TEST_CASE("a single impact delivers the restitution of the effective damping rat
       CHECK(std::abs(impact_of(scene, Calibration::two_body).restitution - e) < allowed);
     }
   }
-  Scene paper;
-  paper.damper().wall_stiffness = 1e14;
+  Scene paper{.dampers = {{.wall_stiffness = 1e14}}};
   CHECK(impact_of(paper, Calibration::fixed_wall).restitution ==
         doctest::Approx(0.597).epsilon(5e-4 / 0.597));
   paper.damper().mass_ratio = 1e-6;  // a primary mass that stands still
@@ -340,9 +333,7 @@ TEST_CASE("a critically or overdamped wall gives nothing back until something pu
   // alone never comes back to the wall; here the primary mass, thrown to the right of x = 0, takes it along
   // until it has turned and x'' > 0 no longer presses.
   for (double nu : {1e-6, 0.5, 30.0}) {
-    Scene scene;
-    scene.damper().mass_ratio = nu;
-    scene.damper().restitution = 0;
+    const Scene scene{.dampers = {{.mass_ratio = nu, .restitution = 0}}};
     const System<double> system(scene);
     const ContactModes<double> walls(system, zeta_m<double>(scene.damper(), Calibration::fixed_wall));
     const Contact<double> contact(walls, 0.0, {-1, 0, 0, -1}, Wall::left);
@@ -361,8 +352,7 @@ TEST_CASE("a critically or overdamped wall gives nothing back until something pu
 
 TEST_CASE("a flight that dies away loses all its energy to its damper, in however long a time") {
   for (double zeta : {1e-3, 0.5, 0.9, 1.0, 1.1, 30.0, 1e6}) {
-    Scene scene;
-    scene.damping_ratio = zeta;
+    const Scene scene{.damping_ratio = zeta};
     const System<double> system(scene);
     for (double v : {0.0, -3.0}) {
       const Flight<double> flight(system, 0, {2, v, 0.5, 0});

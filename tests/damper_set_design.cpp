@@ -57,8 +57,7 @@ TEST_CASE("the dampers are those asked for, and what is said of them is a run's"
   CHECK(mass == doctest::Approx(asked.mass_ratio).epsilon(2e-3));
   CHECK(set.edges.front() == asked.upper);
   CHECK(set.edges.back() == asked.to);
-  Restitution engine;
-  engine.budget.max_impacts = 10'000'000;
+  const Restitution engine{.budget = {.max_impacts = 10'000'000}};
   // In millimetres instead of releases.
   Scene scene = scene_of_set(asked, set.dampers);
   scene.x0 = asked.release;

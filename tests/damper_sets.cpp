@@ -31,11 +31,8 @@ Run exponential_decay(int n, double from, double eta) {
 double relative(double value, double to) { return std::abs(value / to - 1); }
 
 Run decay_of(double mass_ratio, double x0, double until) {
-  Scene scene;
-  scene.damper().mass_ratio = mass_ratio;
-  scene.x0 = x0;
-  scene.until_time = 1e5;
-  scene.until_amplitude = until;
+  const Scene scene{
+      .x0 = x0, .until_time = 1e5, .until_amplitude = until, .dampers = {{.mass_ratio = mass_ratio}}};
   return simulate(scene, Restitution{}, Record{});
 }
 
@@ -134,10 +131,7 @@ TEST_CASE("the sum of one damper is that damper, in clearances of its own") {
 
 TEST_CASE("two dampers that strike regularly lose what each does alone") {
   // Clearances of 1 and 1.5 at amplitudes of 0.11 to 0.2: one impact in each half cycle of both (Figure 5).
-  Scene scene;
-  scene.x0 = 6;
-  scene.until_time = 1e5;
-  scene.until_amplitude = 0.1;
+  Scene scene{.x0 = 6, .until_time = 1e5, .until_amplitude = 0.1};
   scene.dampers = {{.mass_ratio = 0.002, .clearance = 1}, {.mass_ratio = 0.004, .clearance = 1.5}};
   const Run together = simulate(scene, Restitution{.budget = {.max_impacts = 1'000'000}}, Record{});
   const std::vector<double> edges{0.2, 0.15, 0.11};

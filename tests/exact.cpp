@@ -26,11 +26,7 @@ constexpr double pi_d = std::numbers::pi;
 
 // The secondary mass stays clear of the walls while |x| < 1/2: it rests at z = x + y = 1/2.
 Scene without_contact(double x0, double v0 = 0) {
-  Scene scene;
-  scene.x0 = x0;
-  scene.v0 = v0;
-  scene.damper().y0 = 0.5 - x0;
-  scene.damper().w0 = -v0;
+  Scene scene{.x0 = x0, .v0 = v0, .dampers = {{.y0 = 0.5 - x0, .w0 = -v0}}};
   return scene;
 }
 
@@ -167,8 +163,7 @@ TEST_CASE("row 0 runs from the release to the first zero crossing, an unfinished
 
 TEST_CASE(
     "a scene stops at its time, at its amplitude or at whichever comes first, or when a budget is used up") {
-  Scene scene;
-  scene.until_time = 33.3;
+  Scene scene{.until_time = 33.3};
   CHECK(simulate(scene, Exact{}, {}).stop_reason == StopReason::time);
   CHECK(simulate(scene, Exact{}, {}).end_time == 33.3);
 
@@ -188,8 +183,7 @@ TEST_CASE(
 
   scene.until_time = 1e6;
   scene.until_amplitude.reset();
-  Exact options;
-  options.budget.max_impacts = 7;
+  Exact options{.budget = {.max_impacts = 7}};
   Run run = simulate(scene, options, everything());
   CHECK(run.stop_reason == StopReason::impact_budget);
   CHECK(run.impacts->time.size() == 7);
@@ -219,8 +213,7 @@ TEST_CASE("history is sampled where it is asked for, to its last sample, by time
     CHECK(run.end_time == *scene.until_time);
   }
   scene.until_time = 300;
-  Record record;
-  record.history_below = {{5.5, 10, 21}, {4.9, 5, 11}};
+  const Record record{.history_below = {{5.5, 10, 21}, {4.9, 5, 11}}};
   const Run run = simulate(scene, Exact{}, record);
   REQUIRE(run.history->time.size() == 32);
   std::size_t row = 0;
@@ -234,10 +227,7 @@ TEST_CASE("history is sampled where it is asked for, to its last sample, by time
 
 TEST_CASE("a lossless wall conserves energy") {
   for (double stiffness : {1e4, 1e8}) {
-    Scene scene;
-    scene.damper().restitution = 1;
-    scene.damper().wall_stiffness = stiffness;
-    scene.until_time = 400;
+    const Scene scene{.until_time = 400, .dampers = {{.restitution = 1, .wall_stiffness = stiffness}}};
     const Run run = simulate(scene, Exact{}, everything());
     CHECK(run.impacts->time.size() > 500);
     const double before = run.energy->initial.total(), after = run.energy->final.total();
@@ -247,10 +237,7 @@ TEST_CASE("a lossless wall conserves energy") {
 }
 
 TEST_CASE("with e = 0 the mass stays at the wall that it meets until the primary mass turns back") {
-  Scene scene;
-  scene.damper().restitution = 0;
-  scene.damper().wall_stiffness = 1e8;
-  scene.until_time = 60;
+  const Scene scene{.until_time = 60, .dampers = {{.restitution = 0, .wall_stiffness = 1e8}}};
   const Run run = simulate(scene, Exact{}, everything());
   const std::vector<std::int64_t>& impacts = run.half_cycles->impacts;
   for (std::size_t n = 2; n < impacts.size(); ++n) CHECK(impacts[n] == 1);
@@ -265,11 +252,7 @@ TEST_CASE("with e = 0 the mass stays at the wall that it meets until the primary
 
 TEST_CASE(
     "a primary mass that the first impact sets in motion starts its first half cycle there, either way") {
-  Scene scene;
-  scene.x0 = 0;
-  scene.damper().y0 = 0.5;
-  scene.damper().w0 = 1;
-  scene.until_time = 20;
+  Scene scene{.x0 = 0, .until_time = 20, .dampers = {{.y0 = 0.5, .w0 = 1}}};
   const Run right = simulate(scene, Exact{}, everything());
   scene.damper().w0 = -1;
   const Run left = simulate(scene, Exact{}, everything());
@@ -315,9 +298,7 @@ TEST_CASE("a mass pressed against a wall, or overlapping it, is in contact and n
   REQUIRE(other.contacts->begin.size() == 1);
   CHECK(other.contacts->wall[0] == Wall::right);
   CHECK(other.energy->contact_loss == doctest::Approx(run.energy->contact_loss).epsilon(1e-12));
-  Scene overlapping;
-  overlapping.damper().y0 = 1.01;
-  overlapping.until_time = 0.2;
+  const Scene overlapping{.until_time = 0.2, .dampers = {{.y0 = 1.01}}};
   run = simulate(overlapping, Exact{}, everything());
   CHECK(run.contacts->wall.at(0) == Wall::right);
   CHECK(run.contacts->begin.at(0) == 0);
@@ -346,9 +327,7 @@ TEST_CASE("the same scene in extended precision agrees before the chaotic amplit
     double x0, until;
   };
   for (const auto& [x0, until] : {Case{6, 400}, Case{4.5, 100}}) {
-    Scene scene;
-    scene.x0 = x0;
-    scene.until_time = until;
+    const Scene scene{.x0 = x0, .until_time = until};
     const Run in_double = exact_in<double>(scene, {}), in_extended = exact_in<long double>(scene, {});
     // 1e-12 is a few thousand roundings, those of as many impacts.
     CHECK(farthest(in_double.half_cycles->amplitude, in_extended.half_cycles->amplitude) < 1e-12);

@@ -20,8 +20,7 @@ using namespace impact_damper;
 namespace {
 
 Run short_run(const Engine& engine) {
-  Scene scene;
-  scene.until_time = 20;
+  const Scene scene{.until_time = 20};
   return simulate(scene, engine, {});
 }
 

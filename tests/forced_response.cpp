@@ -19,12 +19,11 @@ namespace {
 
 // A mast: 40 kg on 16 kN/m, 1.6 kg in a box with a clearance of 10 mm.
 Scene mast(double force, double frequency) {
-  Scene scene;
-  scene.damper().mass_ratio = 0.04;
-  scene.damping_ratio = 0.002;
-  scene.x0 = 0;
-  scene.force_amplitude = force;
-  scene.force_frequency = frequency;
+  Scene scene{.damping_ratio = 0.002,
+              .x0 = 0,
+              .force_amplitude = force,
+              .force_frequency = frequency,
+              .dampers = {{.mass_ratio = 0.04}}};
   return scene;
 }
 
@@ -231,8 +230,7 @@ TEST_CASE("points with two motions next to each other are one range") {
 
 TEST_CASE(
     "without viscous damping a force that impacts cannot hold leads to no steady motion, and that is seen") {
-  Scene scene;
-  scene.x0 = 0;
+  Scene scene{.x0 = 0};
   scene.force_amplitude = 2.5 * scene.damper().mass_ratio;
   const ForcedResponse response = response_of(scene);
   const auto largest = response.largest();
@@ -248,8 +246,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a motion that a budget of the engine ends is not known, and none of them is the largest") {
-  Exact engine;
-  engine.budget.max_impacts = 1;
+  const Exact engine{.budget = {.max_impacts = 1}};
   Scene scene = mast(0.0625, 1);
   const ForcedResponse response = response_of(scene, engine);
   CHECK_FALSE(response.points[response.given].rising.is_known());

@@ -113,12 +113,13 @@ TEST_CASE(
 }
 
 TEST_CASE("the paper's stuck regime begins with a mass that the fifth derivative presses to its wall") {
-  Scene scene;
-  scene.x0 = 0, scene.v0 = 1, scene.damper().y0 = 1, scene.damper().mass_ratio = 1;
-  scene.force_amplitude = scene.force_frequency = 1;
-  scene.until_time = 1;
-  Cem options;
-  options.stuck_speed = 0.01;
+  const Scene scene{.x0 = 0,
+                    .v0 = 1,
+                    .force_amplitude = 1,
+                    .force_frequency = 1,
+                    .until_time = 1,
+                    .dampers = {{.mass_ratio = 1, .y0 = 1}}};
+  const Cem options{.stuck_speed = 0.01};
   const Run run = run_of(scene, options);
   CHECK(run.impacts->time.empty());
   REQUIRE(run.contacts->begin.size() == 1);

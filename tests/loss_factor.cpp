@@ -98,10 +98,7 @@ TEST_CASE("what is not valid is rejected") {
 }
 
 TEST_CASE("the ordinates of the figures are made of eta as their names say") {
-  Scene scene;
-  scene.damper().mass_ratio = 0.02;
-  scene.damper().restitution = 0.6;
-  scene.damping_ratio = 0.004;
+  const Scene scene{.damping_ratio = 0.004, .dampers = {{.mass_ratio = 0.02, .restitution = 0.6}}};
   const LossFactor loss{{0.5}, {0}, {0.018}};
   CHECK(ordinate(loss, scene, LossOrdinate::eta)[0] == 0.018);
   CHECK(ordinate(loss, scene, LossOrdinate::specific)[0] == doctest::Approx(0.9));

@@ -160,16 +160,11 @@ TEST_CASE("a mass that sticks moves by what the wall gives way under it") {
   // Stuck, nu x'' is the wall's force k q, and x'' = (f - x)/(1 + nu): the way of q during each lasting
   // contact beside that of a free mass, x - x(0) - v(0) t. The wall's damper adds 2/omega_m, omega_m = 2000,
   // in proportion.
-  Scene scene;
-  scene.damper().mass_ratio = 0.25;
-  scene.damper().restitution = 0;
-  scene.damper().wall_stiffness = 1e6;
-  scene.force_amplitude = 2;
-  scene.force_frequency = 0.4;
-  scene.until_time = 20;
-  Record record;
-  record.contacts = true;
-  record.history = {{0, 20, 20001}};
+  const Scene scene{.force_amplitude = 2,
+                    .force_frequency = 0.4,
+                    .until_time = 20,
+                    .dampers = {{.mass_ratio = 0.25, .restitution = 0, .wall_stiffness = 1e6}}};
+  const Record record{.contacts = true, .history = {{0, 20, 20001}}};
   const Run run = simulate(scene, Exact{}, record);
   const History& h = *run.history;
   double gives = 0, flies = 0;
@@ -202,8 +197,7 @@ struct ShortEnsemble {
   Run first;
 
   ShortEnsemble() {
-    Scene scene;
-    scene.until_amplitude = 5.5;
+    const Scene scene{.until_amplitude = 5.5};
     record.contacts = true;
     first = simulate(scene, Exact{}, record);
     const std::vector<Scene> scenes = ensemble_of(scene, {.members = 3});
@@ -386,11 +380,12 @@ TEST_CASE("a member that is missing, of another release or engine, or contradict
 }
 
 TEST_CASE("members record all that is asked for but the history and the energy balance") {
-  Record record;
-  record.half_cycles = false;
-  record.impacts = record.contacts = record.energy = true;
-  record.history = {{0, 1, 2}};
-  record.history_below = {{1, 1, 2}};
+  const Record record{.half_cycles = false,
+                      .impacts = true,
+                      .contacts = true,
+                      .energy = true,
+                      .history = {{0, 1, 2}},
+                      .history_below = {{1, 1, 2}}};
   const Record kept = record_of_member(record);
   CHECK(kept.impacts);
   CHECK(kept.contacts);

@@ -30,8 +30,7 @@ double predicted(double force) {
   return a0 - (a1 * a1 - slope * slope) / (4 * a2);
 }
 Run decay() {
-  Scene scene;
-  scene.until_time = 0.1;
+  Scene scene{.until_time = 0.1};
   Run run = simulate(scene, Exact{}, Record{});
   run.scene.damper().mass_ratio = nu;
   HalfCycles& half_cycles = run.half_cycles.emplace();

@@ -25,10 +25,8 @@ constexpr double pi = std::numbers::pi;
 
 // n half cycles, row i with amplitude(i), its peak at i pi and a zero crossing half of pi later.
 Run decay(int n, const std::function<double(int)>& amplitude) {
-  Scene scene;
-  scene.until_time = 0.1;
-  Record record;
-  record.impacts = record.contacts = true;
+  const Scene scene{.until_time = 0.1};
+  const Record record{.impacts = true, .contacts = true};
   Run run = simulate(scene, Exact{}, record);
   run.scene.until_time = run.end_time = n * pi;
   HalfCycles& rows = run.half_cycles.emplace();
@@ -249,13 +247,8 @@ TEST_CASE("a wall gives way as a damped spring struck at the fastest impact does
   // Either wall, met first and once. Struck at speed w the wall of two free masses gives way at most by
   // (w / omega) exp(-z arccos(z) / sqrt(1 - z^2)), omega^2 = (1 + nu) k / nu, z = zeta_m sqrt(1 + nu).
   for (const double w0 : {-2.0, 3.0}) {
-    Scene scene;
-    scene.x0 = 0;
-    scene.damper().y0 = 0.5;
-    scene.damper().w0 = w0;
-    scene.until_time = 0.4;
-    Record record;
-    record.impacts = true;
+    const Scene scene{.x0 = 0, .until_time = 0.4, .dampers = {{.y0 = 0.5, .w0 = w0}}};
+    const Record record{.impacts = true};
     const Run run = simulate(scene, Exact{}, record);
     const double nu = scene.damper().mass_ratio, decrement = -std::log(scene.damper().restitution);
     const double z = decrement / std::hypot(pi, decrement) * std::sqrt(1 + nu);
@@ -268,18 +261,15 @@ TEST_CASE("a wall gives way as a damped spring struck at the fastest impact does
 }
 
 TEST_CASE("rigid walls give way by nothing, and a run mixes as much as itself") {
-  Scene scene;
-  scene.until_amplitude = 3;
-  Record record;
-  record.impacts = true;
+  const Scene scene{.until_amplitude = 3};
+  const Record record{.impacts = true};
   const Run run = simulate(scene, Restitution{}, record);
   CHECK(measured("wall_overlap", {}, {run}) < 1e-12);
   CHECK(measured("mixed_share_ratio", {{"from", 3}, {"to", 5}}, {run, run}) == 1);
 }
 
 TEST_CASE("the share of mixed half cycles is that outside the windows, divided by the second run's") {
-  Scene scene;
-  scene.until_amplitude = 3;
+  const Scene scene{.until_amplitude = 3};
   const Run second = simulate(scene, Restitution{}, Record{});
   Run run = second;
   const auto share = [](const Run& of) {
@@ -389,10 +379,7 @@ TEST_CASE("a first missed impact is put in proportion to another scene's") {
 }
 
 TEST_CASE("the order of a step is the slope of its amplitudes' errors, summed") {
-  Scene scene;
-  scene.damper().mass_ratio = 0.1;
-  scene.damper().wall_stiffness = 100;
-  scene.until_time = 30;
+  const Scene scene{.until_time = 30, .dampers = {{.mass_ratio = 0.1, .wall_stiffness = 100}}};
   const Run exact = simulate(scene, Exact{}, Record{});
   const auto error = [&](double step, bool locate) {
     const Run run = simulate(scene, Cem{.time_step = step, .locate = locate}, Record{});
@@ -416,9 +403,7 @@ TEST_CASE("the order of a step is the slope of its amplitudes' errors, summed") 
 }
 
 TEST_CASE("the impacts of half cycles that end stuck become more as a power of 1/(1 - e)") {
-  Scene scene;
-  scene.damper().mass_ratio = 0.02;
-  scene.until_time = 1;
+  Scene scene{.until_time = 1, .dampers = {{.mass_ratio = 0.02}}};
   const double grows = measured("stuck_impacts_growth", {}, {simulate(scene, Exact{}, {true, true, true})});
   double sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (const double e : {0.4, 0.6, 0.8, 0.9}) {
@@ -439,16 +424,13 @@ TEST_CASE("the impacts of half cycles that end stuck become more as a power of 1
 }
 
 TEST_CASE("the paper's stuck regime saves the steps that a run to the same amplitude can do without") {
-  Scene scene;
-  scene.damper().mass_ratio = 0.05;
-  scene.until_amplitude = 1;
+  const Scene scene{.until_amplitude = 1, .dampers = {{.mass_ratio = 0.05}}};
   const Run file = simulate(scene, Exact{}, {true, true, true});
   const double speed = 0.4;
   const auto ends = [&](std::optional<double> stuck_speed, std::int64_t steps) {
     Scene its = scene;
     its.until_amplitude = 5;
-    Cem engine{.locate = true, .large_step = 0.02, .stuck_speed = stuck_speed};
-    engine.max_steps = steps;
+    const Cem engine{.locate = true, .large_step = 0.02, .stuck_speed = stuck_speed, .max_steps = steps};
     return simulate(its, engine, Record{}).stop_reason;
   };
   // The share of steps is right if with as many the run comes to its end, and with fewer it does not.
@@ -478,8 +460,7 @@ TEST_CASE("measures of several dampers are what they are for decays of known los
   CHECK(measured("alike_range", {{"from", 0.1}, {"to", 5}, {"within", 0.7}}, {run}) == doctest::Approx(50));
 
   // 0.03 together; alone eta = 0.01 with nu = 0.02, so that dampers of 0.02 and 0.02 should lose 0.02.
-  Scene scene;
-  scene.until_time = 0.1;
+  Scene scene{.until_time = 0.1};
   scene.dampers = {{.mass_ratio = 0.02, .clearance = 1}, {.mass_ratio = 0.02, .clearance = 3}};
   Run set = simulate(scene, Restitution{}, Record{});
   set.half_cycles = decay(300, [](int i) { return 6 * std::exp(-0.03 * i * pi / 2); }).half_cycles;

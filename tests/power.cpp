@@ -39,8 +39,7 @@ const Power& power() {
     input.claims = claims_on_scenes_of(catalogue, read_claims(source / "data/claims.json").claims);
     input.further = catalogue.runs;
     input.asked = catalogue.responses;
-    Record record;
-    record.impacts = record.contacts = true;
+    const Record record{.impacts = true, .contacts = true};
     for (const CatalogueScene& scene : catalogue.scenes)
       input.runs[scene.name] =
           simulate(read_scene(source / "data/scenes" / (scene.name + ".json")), Exact{}, record);
@@ -142,8 +141,7 @@ TEST_CASE("a number that turns no verdict as it is turns none") {
 }
 
 TEST_CASE("a changed scene changes its further runs, each with its own numbers in place of the scene's") {
-  Scene scene;
-  scene.until_amplitude = 4;
+  const Scene scene{.until_amplitude = 4};
   PowerInput input;
   input.runs["small"] = simulate(scene, Exact{}, Record{});
   input.further = {{"small.later", "small", {{"x0", 7}}, {}, Record{}}};

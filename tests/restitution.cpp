@@ -220,8 +220,7 @@ TEST_CASE("bounce-down that ends stuck costs w^2 / (pi A^2) per radian and mass 
 
 TEST_CASE("e = 1 conserves energy through a hundred thousand impacts") {
   const Scene scene{.x0 = 2, .until_time = 1e7, .dampers = {{.mass_ratio = 0.3, .restitution = 1}}};
-  Restitution options;
-  options.budget.max_impacts = 100000;
+  const Restitution options{.budget = {.max_impacts = 100000}};
   const Run run = simulate(scene, options, everything());
   CHECK(run.stop_reason == StopReason::impact_budget);
   CHECK(run.impacts->time.size() == 100000);
@@ -233,8 +232,7 @@ TEST_CASE("e = 1 conserves energy through a hundred thousand impacts") {
 TEST_CASE("the accumulation tolerance does not show in the motion") {
   std::vector<Run> runs;
   for (double tolerance : {1e-6, 1e-8, 1e-10}) {
-    Restitution options;
-    options.accumulation_tolerance = tolerance;
+    const Restitution options{.accumulation_tolerance = tolerance};
     runs.push_back(simulate({.x0 = 8, .until_time = 80}, options, everything()));
   }
   for (const Run& run : runs) {
@@ -269,13 +267,11 @@ TEST_CASE("the forced solution with two symmetric impacts per cycle holds for te
   double side = 1;
   while (since < 0) since += period, side = -side;
   while (since >= period) since -= period, side = -side;
-  Scene scene;
-  scene.damper().mass_ratio = nu;
-  scene.damper().restitution = e;
-  scene.force_amplitude = side * f0;
-  scene.force_frequency = omega;
-  scene.x0 = x(since);
-  scene.v0 = v(since);
+  Scene scene{.x0 = x(since),
+              .v0 = v(since),
+              .force_amplitude = side * f0,
+              .force_frequency = omega,
+              .dampers = {{.mass_ratio = nu, .restitution = e}}};
   scene.damper().y0 = x(0) + speed * since - scene.x0;
   scene.damper().w0 = speed - scene.v0;
   scene.until_time = 1e4 * 2 * period;
@@ -349,8 +345,7 @@ TEST_CASE("a fast light mass costs the primary mass's speed no digits") {
                     .v0 = 20,
                     .until_time = 20,
                     .dampers = {{.mass_ratio = 2e-7, .restitution = 1, .w0 = -34488}}};
-  Restitution options;
-  options.budget.max_impacts = 1'000'000;
+  const Restitution options{.budget = {.max_impacts = 1'000'000}};
   const Run run = simulate(scene, options, {.energy = true});
   const double impacts = double(run.energy->impact_loss.size());
   CHECK(impacts > 600'000);

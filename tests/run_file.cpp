@@ -26,35 +26,23 @@ namespace {
 using Lines = std::vector<std::string>;
 
 Engine lagged_cem() {
-  Cem engine;
-  engine.time_step = 1e-4;
-  engine.damper = Damper::lagged;
-  engine.budget.max_time = 1e6;
+  Cem engine{.time_step = 1e-4, .damper = Damper::lagged, .budget = {.max_time = 1e6}};
   return engine;
 }
 
 Engine cem_of_two_rates() {
-  Cem engine;
-  engine.time_step = 1e-4;
-  engine.locate = true;
-  engine.large_step = 0.1;
-  engine.stuck_speed = 0.02;
-  engine.budget.max_time = 1e6;
+  Cem engine{
+      .time_step = 1e-4, .locate = true, .large_step = 0.1, .stuck_speed = 0.02, .budget = {.max_time = 1e6}};
   return engine;
 }
 
 Engine two_body_exact() {
-  Exact engine;
-  engine.calibration = Calibration::two_body;
-  engine.budget.max_time = 1e6;
+  Exact engine{.calibration = Calibration::two_body, .budget = {.max_time = 1e6}};
   return engine;
 }
 
 Engine restitution_on_a_budget() {
-  Restitution engine;
-  engine.accumulation_tolerance = 1e-5;
-  engine.budget = {3, 4, 5.5};
-  engine.max_steps = 6;
+  Restitution engine{.accumulation_tolerance = 1e-5, .budget = {3, 4, 5.5}, .max_steps = 6};
   return engine;
 }
 
@@ -491,9 +479,7 @@ TEST_CASE("all that the default budgets allow and the longest history make a fil
 TEST_CASE("a scene file names what differs from the defaults") {
   const Scene scene =
       parse_scene("s.json", R"({"mass_ratio": 0.04, "until_amplitude": 0.01, "description": "d"})");
-  Scene expected;
-  expected.damper().mass_ratio = 0.04;
-  expected.until_amplitude = 0.01;
+  const Scene expected{.until_amplitude = 0.01, .dampers = {{.mass_ratio = 0.04}}};
   CHECK(scene == expected);
   CHECK(parse_scene("s.json", scene_text(scene)) == scene);
 }
@@ -676,10 +662,7 @@ TEST_CASE(
   const std::string text =
       R"({"x0": 2, "dampers": [{}, {"mass_ratio": 0.01, "restitution": 0.5, "clearance": 3,
                                "wall_stiffness": 5, "y0": 2, "w0": -1}], "until_time": 4})";
-  Scene expected;
-  expected.x0 = 2;
-  expected.until_time = 4;
-  expected.dampers = {SceneDamper{}, {0.01, 0.5, 3, 5, 2, -1}};
+  const Scene expected{.x0 = 2, .until_time = 4, .dampers = {SceneDamper{}, {0.01, 0.5, 3, 5, 2, -1}}};
   const Scene scene = parse_scene("s.json", text);
   CHECK(scene == expected);
   CHECK(parse_scene("s.json", scene_text(scene)) == scene);

@@ -24,9 +24,8 @@ constexpr double closed = 1e-10;  // 1e4 impacts at most, each a few dozen round
 
 // Everything that any scene promises: finite numbers, times in order, an energy balance that closes.
 void check(const Scene& scene, const Engine& engine) {
-  Record record;
-  record.impacts = record.contacts = record.energy = true;
-  record.history = {{0, *scene.until_time, 50}};
+  const Record record{
+      .impacts = true, .contacts = true, .energy = true, .history = {{0, *scene.until_time, 50}}};
   const Run run = simulate(scene, engine, record);
   CHECK(std::isfinite(run.end_time));
   CHECK(run.end_time <= *scene.until_time);
@@ -62,8 +61,7 @@ void check(const Scene& scene, const Engine& engine) {
 TEST_CASE(
     "any scene runs to its end in the exact engine, finite, in order and with an energy balance that "
     "closes") {
-  Exact options;
-  options.budget.max_impacts = 10000;
+  const Exact options{.budget = {.max_impacts = 10000}};
   for (std::uint64_t seed = first_seed; seed < first_seed + seeds; ++seed) {
     const Scene scene = scene_of(seed);
     CAPTURE(seed);
@@ -74,8 +72,7 @@ TEST_CASE(
 
 // x is a rounding error of what the wall makes of it: whether it rises or falls cannot be told for a while.
 TEST_CASE("a scene whose primary mass has hardly moved when it is struck is no effort") {
-  Exact options;
-  options.budget.max_impacts = 1000;
+  const Exact options{.budget = {.max_impacts = 1000}};
   for (const std::uint64_t seed : {27136u, 40313u, 99905u, 120138u, 131791u}) {
     Scene scene = scene_of(seed);
     REQUIRE(scene.x0 == 0);
@@ -85,8 +82,7 @@ TEST_CASE("a scene whose primary mass has hardly moved when it is struck is no e
 }
 
 TEST_CASE("any scene that begins between rigid walls runs to its end in the restitution engine") {
-  Restitution options;
-  options.budget.max_impacts = 10000;
+  const Restitution options{.budget = {.max_impacts = 10000}};
   for (std::uint64_t seed = first_seed; seed < first_seed + seeds; ++seed) {
     Scene scene = scene_of(seed);
     scene.damper().y0 = std::fmin(std::fmax(scene.damper().y0, 0), 1);

@@ -903,8 +903,7 @@ TEST_CASE("beyond the largest force of a decay the prediction is a curve of its 
     decay.run.half_cycles->amplitude.push_back(amplitude);
     decay.run.half_cycles->impacts.push_back(1);
   }
-  Scene scene;
-  scene.force_amplitude = 0.001;
+  const Scene scene{.force_amplitude = 0.001};
   const SweepResponse sweep{scene,
                             Exact{},
                             {},

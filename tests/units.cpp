@@ -72,10 +72,7 @@ TEST_CASE("what is not said of a scene in units is at rest, undamped, unforced a
   scene.damper().secondary_mass = 0.1;
   scene.damper().clearance = 4;
   scene.until_seconds = 1;
-  Scene expected;
-  expected.damper().mass_ratio = 0.05;
-  expected.x0 = 0;
-  expected.until_time = 5;
+  const Scene expected{.x0 = 0, .until_time = 5, .dampers = {{.mass_ratio = 0.05}}};
   CHECK(dimensionless(scene) == expected);
 }
 
@@ -91,9 +88,7 @@ TEST_CASE("a motion in units obeys the equations with their units") {
   given.initial_velocity = 0;
   given.initial_displacement = 0;
   const Scales scales = scales_of(given);
-  Record record;
-  record.impacts = true;
-  record.history = {{0, 2 / scales.of(Dimension::time), 41}};
+  const Record record{.impacts = true, .history = {{0, 2 / scales.of(Dimension::time), 41}}};
   const Run run = simulate(dimensionless(given), Exact{}, record);
   REQUIRE(run.impacts->time.empty());
 

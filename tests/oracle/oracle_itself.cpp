@@ -288,9 +288,9 @@ TEST_CASE("one damper with two impacts in each period moves as the closed form s
   // The scene begins where the force is zero, in that half period.
   double start = std::fmod(-tau / omega, theta);
   if (start < 0) start += theta;
-  Scene scene;
-  scene.damping_ratio = 0, scene.force_frequency = omega;
-  scene.force_amplitude = size * (1 - omega * omega) * (std::cos(omega * start + tau) > 0 ? 1 : -1);
+  Scene scene{.damping_ratio = 0,
+              .force_amplitude = size * (1 - omega * omega) * (std::cos(omega * start + tau) > 0 ? 1 : -1),
+              .force_frequency = omega};
   const auto x = [&](double t) {
     return a * std::cos(t) + b * std::sin(t) + size * std::sin(omega * t + tau);
   };
@@ -311,9 +311,9 @@ TEST_CASE("one damper with two impacts in each period moves as the closed form s
 }
 
 TEST_CASE("masses that meet a wall at one instant share their impulses") {
-  Scene scene;
-  scene.x0 = 0, scene.until_time = 0.1;
-  scene.dampers = {damper(0.5, 1, 1, 0, -1), damper(0.5, 0.5, 1, 0, -1), damper(0.5, 0.5, 1, 0, 0)};
+  Scene scene{.x0 = 0,
+              .until_time = 0.1,
+              .dampers = {damper(0.5, 1, 1, 0, -1), damper(0.5, 0.5, 1, 0, -1), damper(0.5, 0.5, 1, 0, 0)}};
   // J = -(0.5 2 + 0.5 1.5)/(1 + 0.5 + 0.5): the third rests there and is left behind.
   Answer answer = answer_for(scene);
   REQUIRE(answer.impacts.size() == 2);
@@ -355,9 +355,8 @@ TEST_CASE("equal dampers are one of their masses together, sticking included") {
 
 TEST_CASE("those that stick move with the primary mass until x'' is zero") {
   // At rest on the right wall, x0 > 0: x = cos(t / sqrt(1.5)) until x = 0, then all fly with x' as it is.
-  Scene scene;
-  scene.x0 = 1, scene.until_time = 3;
-  scene.dampers = {damper(0.25, 0.5, 10, 10, 0), damper(0.25, 0, 20, 20, 0)};
+  const Scene scene{
+      .x0 = 1, .until_time = 3, .dampers = {damper(0.25, 0.5, 10, 10, 0), damper(0.25, 0, 20, 20, 0)}};
   const Answer answer = answer_for(scene);
   REQUIRE(answer.contacts.size() == 2);
   const double release = std::numbers::pi / 2 * std::sqrt(1.5);
@@ -416,10 +415,13 @@ TEST_CASE("energy is kept, and no order of the dampers changes anything") {
 TEST_CASE("the oracle finds what a plain integration does") {
   for (const Walls walls : {Walls::rigid, Walls::compliant}) {
     const bool rigid = walls == Walls::rigid;
-    Scene scene;
-    scene.damping_ratio = 0.05, scene.x0 = -2, scene.v0 = 0.3, scene.until_time = 10.9;
-    scene.force_amplitude = 0.5, scene.force_frequency = 0.7;
-    scene.dampers = {damper(0.3, 0.7, 1, rigid ? 0 : -0.01, rigid ? 0 : 0.1, 300)};
+    const Scene scene{.damping_ratio = 0.05,
+                      .x0 = -2,
+                      .v0 = 0.3,
+                      .force_amplitude = 0.5,
+                      .force_frequency = 0.7,
+                      .until_time = 10.9,
+                      .dampers = {damper(0.3, 0.7, 1, rigid ? 0 : -0.01, rigid ? 0 : 0.1, 300)}};
     reference::same_until_its_time(run_of_oracle(scene, walls),
                                    reference::PlainIntegration(scene, rigid, sample_count).run(), 1e-7);
   }
