@@ -172,8 +172,7 @@ TEST_CASE("C is told the averaged loss factor and where bounce-down ended") {
 TEST_CASE("every number of a run file is a column for C, with the same bits") {
   const impact_damper_window window = {0, 50, 101};
   const auto check = [&](const char* scene, const char* name, const Engine& engine) {
-    CAPTURE(scene);
-    CAPTURE(name);
+    INFO("scene ", scene, ", name ", name);
     impact_damper_run* run = nullptr;
     REQUIRE(impact_damper_simulate(scene, name, &window, &run, nullptr, 0) == IMPACT_DAMPER_DONE);
     const Record record{.impacts = true, .contacts = true, .energy = true, .history = {{0, 50, 101}}};

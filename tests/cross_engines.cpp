@@ -123,8 +123,7 @@ TEST_CASE(
       .until_time = 6,
       .dampers = {{.mass_ratio = 2.041, .restitution = 1, .wall_stiffness = 235.8, .y0 = 1, .w0 = 1}}};
   for (const Scene& scene : {struck, overlapping, hit_later, lossless}) {
-    CAPTURE(scene.damper().y0);
-    CAPTURE(scene.damper().mass_ratio);
+    INFO("y0 ", scene.damper().y0, ", mass_ratio ", scene.damper().mass_ratio);
     const Cem steps{.locate = true};
     const HalfCycles exact = *simulate(scene, Exact{}, {}).half_cycles;
     const HalfCycles cem = *simulate(scene, steps, {}).half_cycles;

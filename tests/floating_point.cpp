@@ -14,23 +14,16 @@
 
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/simulate.hpp"
+#include "rejection.hpp"
 
 using namespace impact_damper;
 
 namespace {
 
-Run short_run(const Engine& engine) {
-  const Scene scene{.until_time = 20};
-  return simulate(scene, engine, {});
-}
+Run short_run(const Engine& engine) { return simulate({.until_time = 20}, engine, {}); }
 
 std::string rejection(const Engine& engine) {
-  try {
-    short_run(engine);
-  } catch (const NumericalError& error) {
-    return error.what();
-  }
-  return "not rejected";
+  return rejection_of<NumericalError>([&] { short_run(engine); });
 }
 
 const Engine engines[] = {Exact{}, Restitution{}, Cem{}};
@@ -47,8 +40,8 @@ TEST_CASE("no engine runs with another rounding mode, and each does again once i
       std::fesetround(mode);
       const std::string text = rejection(engine);
       std::fesetround(FE_TONEAREST);
-      CHECK(text.find("the rounding mode is not to nearest") != std::string::npos);
-      CHECK(rejection(engine) == "not rejected");
+      CHECK(contains(text, "the rounding mode is not to nearest"));
+      CHECK(rejection(engine) == not_rejected);
     }
   }
 }
@@ -61,7 +54,7 @@ TEST_CASE("no engine runs where results or operands that are denormal count as z
       _mm_setcsr(before | bits);
       const std::string text = rejection(engine);
       _mm_setcsr(before);
-      CHECK(text.find("denormal numbers are flushed to zero") != std::string::npos);
+      CHECK(contains(text, "denormal numbers are flushed to zero"));
     }
   }
 }

@@ -20,6 +20,7 @@
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/simulate.hpp"
+#include "rejection.hpp"
 
 using namespace impact_damper;
 
@@ -218,12 +219,7 @@ struct ShortEnsemble {
   // What reading the ensemble throws.
   template <class Error>
   std::string complaint(const EnsembleOptions& options = {.members = 3}) const {
-    try {
-      Runs(folder, options).ensemble("short");
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "nothing";
+    return rejection_of<Error>([&] { Runs(folder, options).ensemble("short"); });
   }
 };
 
@@ -320,41 +316,31 @@ TEST_CASE("a further run that is missing, or of another scene or engine than the
   write_file(folders.scenes / "short.json", scene_text(files.first.scene));
   CatalogueRun wanted{"short.later", "short", {{"x0", 6.5}}, Restitution{}, Record{}};
   const std::filesystem::path file = folders.file_of(wanted.name);
-  const auto complaint = [&] {
-    try {
-      folders.read(wanted);
-    } catch (const std::exception& error) {
-      return std::string(error.what());
-    }
-    return std::string("nothing");
-  };
-  CHECK(complaint().find("made by: impact-damper run --scene " + (folders.scenes / "short.json").string() +
-                         " -o " + file.string()) != std::string::npos);
+  const auto complaint = [&] { return rejection_of([&] { folders.read(wanted); }); };
+  CHECK(contains(complaint(), "made by: impact-damper run --scene " +
+                                  (folders.scenes / "short.json").string() + " -o " + file.string()));
   const auto becomes = [&](const Scene& scene, const Engine& engine) {
     files.write(file, simulate(scene, engine, Record{}));
     return complaint();
   };
   Scene changed = files.first.scene;
-  CHECK(becomes(changed, Restitution{})
-            .find("/scene/x0: must be 6.5 as in run short.later of the catalogue, got 6") !=
-        std::string::npos);
+  CHECK(contains(becomes(changed, Restitution{}),
+                 "/scene/x0: must be 6.5 as in run short.later of the catalogue, got 6"));
   changed.x0 = 6.5;
-  CHECK(becomes(changed, Restitution{}) == "nothing");
-  CHECK(
-      becomes(changed, Restitution{.accumulation_tolerance = 1e-6})
-          .find("/engine: must be that of run short.later of the catalogue, restitution, with its options") !=
-      std::string::npos);
+  CHECK(becomes(changed, Restitution{}) == not_rejected);
+  CHECK(contains(becomes(changed, Restitution{.accumulation_tolerance = 1e-6}),
+                 "/engine: must be that of run short.later of the catalogue, restitution, with its options"));
   wanted.engine.reset();
-  CHECK(complaint().find("/engine: must be that of " + folders.file_of("short").string() +
-                         ", exact, with its options, got restitution") != std::string::npos);
-  CHECK(becomes(changed, Exact{}) == "nothing");
+  CHECK(contains(complaint(), "/engine: must be that of " + folders.file_of("short").string() +
+                                  ", exact, with its options, got restitution"));
+  CHECK(becomes(changed, Exact{}) == not_rejected);
 }
 
 TEST_CASE("a member that is missing, of another release or engine, or contradicts itself is rejected") {
   const ShortEnsemble files;
   const std::filesystem::path third = member_file(files.run_file(), 3);
   const Run member = read_run(third);
-  CHECK(files.complaint<std::exception>() == "nothing");
+  CHECK(files.complaint<std::exception>() == not_rejected);
   CHECK(files.complaint<IoError>({.members = 4}) ==
         member_file(files.run_file(), 4).string() +
             ": cannot be read: No such file or directory; made by: impact-damper run --members 4 -o " +
@@ -362,9 +348,9 @@ TEST_CASE("a member that is missing, of another release or engine, or contradict
 
   files.write(third, read_run(member_file(files.run_file(), 2)));
   CHECK(files.complaint<InputError>().starts_with(third.string() + ": /scene/x0: must be "));
-  CHECK(files.complaint<InputError>().find(" as in member 3 of the ensemble of " +
-                                           files.run_file().string()) != std::string::npos);
-  CHECK(files.complaint<std::exception>({.members = 2}) == "nothing");
+  CHECK(contains(files.complaint<InputError>(),
+                 " as in member 3 of the ensemble of " + files.run_file().string()));
+  CHECK(files.complaint<std::exception>({.members = 2}) == not_rejected);
 
   files.write(third, simulate(member.scene, Exact{.calibration = Calibration::two_body}, files.record));
   CHECK(files.complaint<InputError>().starts_with(third.string() + ": /engine: must be that of "));
@@ -376,7 +362,7 @@ TEST_CASE("a member that is missing, of another release or engine, or contradict
                                                   ": /half_cycles/amplitude/0: contradicts the rest"));
 
   files.write(third, member);
-  CHECK(files.complaint<std::exception>() == "nothing");
+  CHECK(files.complaint<std::exception>() == not_rejected);
 }
 
 TEST_CASE("members record all that is asked for but the history and the energy balance") {

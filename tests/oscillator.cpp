@@ -66,9 +66,7 @@ TEST_CASE_TEMPLATE("the solutions from rest keep their relative accuracy for sho
         if (t * slow > 0.6) continue;
         const Expected expected = solutions(a, b, t);
         const Propagator<Real> p = oscillator.propagate(t);
-        CAPTURE(a);
-        CAPTURE(b);
-        CAPTURE(t);
+        INFO("a ", a, ", b ", b, ", t ", t);
         // A handful of roundings each.
         CHECK(magnitude(p.c - expected.c) <= 4 * epsilon * magnitude(expected.c));
         CHECK(magnitude(p.s - expected.s) <= 8 * epsilon * magnitude(expected.s));
@@ -91,9 +89,7 @@ TEST_CASE_TEMPLATE("over long times the solutions are as accurate as the argumen
         if (a * t > 1e6 || (a > 0 && slow * t > 40)) continue;
         const Expected expected = solutions(a, b, t);
         const Propagator<Real> p = oscillator.propagate(t);
-        CAPTURE(a);
-        CAPTURE(b);
-        CAPTURE(t);
+        INFO("a ", a, ", b ", b, ", t ", t);
         // The envelope, with the rounding of omega t and of the exponent.
         const double root_b = std::sqrt(b);
         const double of_s = std::hypot(magnitude(expected.s), magnitude(expected.v) / root_b);
@@ -128,10 +124,7 @@ TEST_CASE_TEMPLATE("the driven response from rest is right at, near and away fro
           const ExpectedResponse expected = driven(a, 1, 0.7, omega, begin, t);
           const DrivenResponse<Real> found =
               oscillator.respond(forcing, forcing.phase(begin), t, oscillator.propagate(t));
-          CAPTURE(a);
-          CAPTURE(omega);
-          CAPTURE(begin);
-          CAPTURE(t);
+          INFO("a ", a, ", omega ", omega, ", begin ", begin, ", t ", t);
           // What the response could at most have grown to in this time, and how far the rounding of the
           // phases omega t and omega begin can shift it.
           const double most1 = 0.7 * std::min({t, 2 / std::max(a, 1e-300), 4 / omega + (omega < 2 ? t : 0)});
@@ -168,10 +161,7 @@ TEST_CASE_TEMPLATE("the series of a motion under a force is the motion, as long 
             const auto u = reference::applied<4>(e, {x, v, f, g});
             const Quad u2 = u[2] - 2 * Quad(a) * u[1] - Quad(b) * u[0];
             const SeriesAt<Real> found = series.departure().at(t);
-            CAPTURE(a);
-            CAPTURE(b);
-            CAPTURE(omega);
-            CAPTURE(share);
+            INFO("a ", a, ", b ", b, ", omega ", omega, ", share ", share);
             // The terms of a damped motion alternate, and add up to more than itself.
             const double noise = (a * a < b / 4 ? 12 : 40) * epsilon;
             CHECK(magnitude(Quad(x) + Quad(v) * Quad(t) + Quad(found.u) - u[0]) <= noise);
@@ -191,9 +181,7 @@ TEST_CASE("the phase of a force after a short time is turned, after a longer one
   for (const double frequency : {0.01, 1.0, 33.0})
     for (const double angle : {0.0, 0.4, 1.5707, 3.2, 12.9, 700.1})
       for (const double by : {0.0, 1e-9, 0.01, 0.03, 0.06, 0.0624}) {
-        CAPTURE(frequency);
-        CAPTURE(angle);
-        CAPTURE(by);
+        INFO("frequency ", frequency, ", angle ", angle, ", by ", by);
         const Forcing<double> force{1, frequency};
         const double begin = angle / frequency, since = by / frequency;
         const SinCos<double> before = force.phase(begin), then = force.phase(-1e9, before, since);

@@ -6,17 +6,25 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <random>
+#include <regex>
+#include <string>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/sha256.hpp"
 #include "impact_damper/engine_options.hpp"
 #include "impact_damper/io/file_output.hpp"
+#include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/provenance.hpp"
+#include "impact_damper/io/run_columns.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
+#include "rejection.hpp"
 #include "same_run.hpp"
 
 using namespace impact_damper;
@@ -24,6 +32,7 @@ using namespace impact_damper;
 namespace {
 
 using Lines = std::vector<std::string>;
+using Json = nlohmann::ordered_json;
 
 Engine lagged_cem() {
   Cem engine{.time_step = 1e-4, .damper = Damper::lagged, .budget = {.max_time = 1e6}};
@@ -145,7 +154,7 @@ TEST_CASE("a run of a scene in units says what one unit of each column is in SI,
       R"("end_time": 7.25,
  "units": {"length_m": 0.01, "time_s": 0.05, "velocity_m_per_s": 0.19999999999999998, "mass_kg": 40, "force_N": 160, "energy_J": 1.6},
  "half_cycles": {)";
-  CHECK(text.find(units) != std::string::npos);
+  CHECK(contains(text, units));
   CHECK(run_text(parse_run("r.json", text)) == run_text(full_run()));
 }
 
@@ -161,7 +170,7 @@ TEST_CASE("units that do not go together are rejected, whichever of them is 1 pe
     const Lines found = problems(replaced(text, given, wrong));
     REQUIRE(!found.empty());
     CHECK(found[0].starts_with("r.json: /units/"));
-    CHECK(found[0].find("must be ") != std::string::npos);
+    CHECK(contains(found[0], "must be "));
   }
   const Lines missing = problems(replaced(text, "\"mass_kg\": 40, ", ""));
   REQUIRE(!missing.empty());
@@ -532,7 +541,7 @@ TEST_CASE("each entry of a run reads back as it was, be it absent, zero or neith
 TEST_CASE("a run file says which program made it") {
   const std::string text = run_text(full_run());
   const Provenance made_by = provenance();
-  CHECK(text.find("\"schema\": \"impact-damper/run/1\"") != text.npos);
+  CHECK(contains(text, "\"schema\": \"impact-damper/run/1\""));
   for (const auto& [key, value] : {std::pair{"version", made_by.version},
                                    {"commit", made_by.commit},
                                    {"compiler", made_by.compiler},
@@ -541,7 +550,7 @@ TEST_CASE("a run file says which program made it") {
                                    {"system", made_by.system}}) {
     const std::string entry = '"' + std::string(key) + "\": \"" + std::string(value) + '"';
     CAPTURE(entry);
-    CHECK(text.find(entry) != text.npos);
+    CHECK(contains(text, entry));
   }
 }
 
@@ -564,7 +573,7 @@ TEST_CASE("a run file of several dampers numbers them from 1 and has columns of 
   const std::string text = run_text(run_of_several());
   const auto holds = [&](const std::string& part) {
     CAPTURE(part);
-    CHECK(text.find(part) != text.npos);
+    CHECK(contains(text, part));
   };
   holds(
       R"("scene": {"damping_ratio": 0, "x0": 6, "v0": 0, "force_amplitude": 0, "force_frequency": 1, "dampers": [{"mass_ratio": 0.1, "restitution": 0.6, "clearance": 1, "wall_stiffness": 10000, "y0": 0.5, "w0": 0}, {"mass_ratio": 0.02, "restitution": 1, "clearance": 0.25, "wall_stiffness": 10000, "y0": 0, "w0": 0}], "until_time": null,)");
@@ -666,8 +675,7 @@ TEST_CASE(
   const Scene scene = parse_scene("s.json", text);
   CHECK(scene == expected);
   CHECK(parse_scene("s.json", scene_text(scene)) == scene);
-  CHECK(scene_text(scene).find("\"mass_ratio\": 0.02, \"restitution\": 0.6, \"clearance\": 1,") !=
-        std::string::npos);
+  CHECK(contains(scene_text(scene), "\"mass_ratio\": 0.02, \"restitution\": 0.6, \"clearance\": 1,"));
 }
 
 TEST_CASE("the longest list of dampers is read from a file as it was") {
@@ -700,4 +708,149 @@ TEST_CASE("a list of dampers beside numbers of one is rejected with all that is 
                                     "s.json: /dampers/0/mass_ratio: must be >= 1e-09 and <= 1e+06, got 0",
                                     "s.json: /dampers/0/x0: unknown key, did you mean \"w0\"?"});
   }
+}
+
+// --- The table of columns ----------------------------------------------------------------------------------
+
+// The table of columns of a run against what else lists them: the schema of run files, and the types that the
+// package for browsers and node declares.
+
+namespace {
+
+std::string source(const std::string& file) { return read_text(SOURCE_FOLDER "/" + file); }
+
+// The schema's rule for a number.
+Json rule_of(const NumberRange& range, const double&) {
+  return {{"type", "number"}, {"minimum", range.least}, {"maximum", range.most}};
+}
+Json rule_of(const NumberRange& range, const std::optional<double>&) {
+  return {{"type", {"number", "null"}}, {"minimum", range.least}, {"maximum", range.most}};
+}
+template <class Whole>
+Json rule_of(const NumberRange& range, const Whole&) {
+  const bool is_bounded = range.most < std::numeric_limits<double>::max();
+  const auto most = is_bounded ? std::int64_t(range.most) : std::numeric_limits<std::int64_t>::max();
+  return {{"type", "integer"}, {"minimum", range.least}, {"maximum", most}};
+}
+
+// The schema of a section or a part of one, without descriptions, and its additions for runs with a list of
+// dampers and for those without.
+struct Schema {
+  Json whole, with_list, without_list;
+};
+
+template <class Owner>
+Schema schema_of(const Json& type) {
+  Schema schema;
+  Json properties, required = Json::array(), of_list = Json::array();
+  const Owner owner{};
+  for_each_column(owner, true, [&](const RunColumnInfo& info, const auto& value) {
+    using Value = std::remove_cvref_t<decltype(value)>;
+    const std::string name(info.name);
+    (info.without_list == WithoutList::same ? required : of_list).push_back(name);
+    if constexpr (HasRunColumns<Value>) {
+      properties[name] = schema_of<Value>("object").whole;
+    } else if constexpr (PartsOfDampers<Value>) {
+      const Json part = schema_of<typename Value::value_type>("object").whole;
+      if (info.without_list == WithoutList::in_section) {
+        properties.update(part["properties"]);
+        schema.without_list["required"] = part["required"];
+        for (const auto& column : part["properties"].items())
+          schema.with_list["properties"][column.key()] = false;
+      }
+      properties[name] = {{"type", "array"}, {"items", part}};
+    } else if constexpr (std::is_arithmetic_v<Value>) {
+      properties[name] = rule_of(info.range, value);
+    } else {
+      properties[name] = {{"type", "array"}, {"items", rule_of(info.range, typename Value::value_type{})}};
+    }
+    if (info.without_list != WithoutList::same) schema.without_list["properties"][name] = false;
+  });
+  schema.whole = {
+      {"type", type}, {"properties", properties}, {"required", required}, {"additionalProperties", false}};
+  schema.with_list["required"] = of_list;
+  return schema;
+}
+
+Json without_descriptions(Json schema) {
+  if (schema.is_structured()) {
+    if (schema.is_object()) schema.erase("description");
+    for (Json& each : schema) each = without_descriptions(each);
+  }
+  return schema;
+}
+
+// Checks that the description of each column, or of what it is in, names its unit. above: of what it is in.
+template <class Owner>
+void units_are_named(const Json& schema, const std::string& above) {
+  const auto words_of = [](Dimension dimension) {
+    return dimension == Dimension::time       ? "1/Omega_n"
+           : dimension == Dimension::length   ? "of epsilon"
+           : dimension == Dimension::velocity ? "epsilon Omega_n"
+                                              : "K epsilon\\^2";
+  };
+  const Owner owner{};
+  for_each_column(owner, true, [&](const RunColumnInfo& info, const auto& value) {
+    using Value = std::remove_cvref_t<decltype(value)>;
+    const Json& its = schema.at("properties").at(std::string(info.name));
+    const std::string text = above + its.at("description").get<std::string>();
+    CAPTURE(text);
+    if constexpr (HasRunColumns<Value>)
+      units_are_named<Value>(its, text);
+    else if constexpr (PartsOfDampers<Value>)
+      units_are_named<typename Value::value_type>(its["items"], text);
+    else if (info.dimension != Dimension::ratio)
+      CHECK(std::regex_search(text, std::regex(std::string(words_of(info.dimension)) + "[.;]")));
+  });
+}
+
+// What the package declares of a section: the columns and numbers that every run has.
+template <class Section>
+std::string type_of() {
+  std::string columns, numbers;
+  const Section section{};
+  for_each_column(section, true, [&](const RunColumnInfo& info, const auto& value) {
+    if (info.without_list != WithoutList::same || HasRunColumns<std::remove_cvref_t<decltype(value)>>) return;
+    std::string& words = std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>> ? numbers : columns;
+    words.append(words.empty() ? "\"" : " | \"").append(info.name) += '"';
+  });
+  return "Columns & Record<" + columns + ", Float64Array>" +
+         (numbers.empty() ? "" : " & Record<" + numbers + ", number>") + ";";
+}
+
+// Calls visit(name, section of its type) for each section.
+template <class Visit>
+void for_each_section(const Visit& visit) {
+  const Run run{};
+  for_each_column(run, true, [&]<class Section>(const RunColumnInfo& info, const std::optional<Section>&) {
+    visit(std::string(info.name), Section{});
+  });
+}
+
+}  // namespace
+
+TEST_CASE("the schema of run files has the columns of the table, in its order, with their ranges and units") {
+  const Json schema = Json::parse(source("data/schema/run.schema.json"));
+  Json with_list, without_list;
+  for_each_section([&]<class Section>(const std::string& name, const Section&) {
+    CAPTURE(name);
+    const Schema expected = schema_of<Section>({"object", "null"});
+    const Json& given = schema["properties"][name];
+    CHECK(without_descriptions(given) == expected.whole);
+    units_are_named<Section>(given, given["description"]);
+    with_list["properties"][name] = expected.with_list;
+    without_list["properties"][name] = expected.without_list;
+  });
+  CHECK(nlohmann::json(schema["then"]) == nlohmann::json(with_list));
+  CHECK(nlohmann::json(schema["else"]) == nlohmann::json(without_list));
+}
+
+TEST_CASE("the package for browsers and node declares the columns that every run has") {
+  const std::string types =
+      std::regex_replace(source("src/wasm/package/index.d.ts"), std::regex("\\s+"), " ");
+  for_each_section([&]<class Section>(const std::string& name, const Section&) {
+    const std::string expected = name + "?: " + type_of<Section>();
+    CAPTURE(expected);
+    CHECK(contains(types, expected));
+  });
 }

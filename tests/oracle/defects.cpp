@@ -246,11 +246,7 @@ TEST_CASE("at rest on a wall with y'' = y''' = 0 the masses stick or part as the
             const oracle::Answer answer = oracle::answer_to(question);
             const Engine engine = rigid ? Engine(Restitution{}) : Engine(Exact{});
             const Run run = simulate(scene, engine, {.impacts = true, .contacts = true});
-            CAPTURE(zeta);
-            CAPTURE(f0);
-            CAPTURE(omega);
-            CAPTURE(y0);
-            CAPTURE(rigid);
+            INFO("zeta ", zeta, ", f0 ", f0, ", omega ", omega, ", y0 ", y0, ", rigid ", rigid);
             REQUIRE(answer.contacts.empty() == run.contacts->begin.empty());
             REQUIRE(answer.impacts.empty() == run.impacts->time.empty());
             if (!answer.contacts.empty()) {
