@@ -96,9 +96,8 @@ double delivered_restitution(const Scene& start, Cem options, double steps_per_c
 // Over touches and releases at all phases of a step: the error is erratic in both if they are not located.
 double mean_over_phases(int steps_per_contact, const std::function<double(double, double)>& error) {
   double sum = 0;
-  for (int i = 0; i < 16; ++i) {
+  for (int i = 0; i < 16; ++i)
     for (int j = 0; j < 8; ++j) sum += std::abs(error(steps_per_contact + j / 8.0, (i + 0.5) / 16));
-  }
   return sum / (16 * 8);
 }
 
@@ -172,18 +171,17 @@ const Scene pressed{.damping_ratio = 0.2,
 }  // namespace
 
 TEST_CASE("the fastest contact frequency is the largest eigenvalue of the undamped contact system") {
-  for (double nu : {1e-4, 0.02, 1.0, 30.0}) {
+  for (double nu : {1e-4, 0.02, 1.0, 30.0})
     for (double k : {1e-3, 1.0, 1e4, 1e9}) {
       Eigen::Matrix2d mass{{1, 0}, {0, nu}}, stiffness{{1 + k, -k}, {-k, k}};
       const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> solver(stiffness, mass);
       CHECK(fastest_contact_frequency({.dampers = {{.mass_ratio = nu, .wall_stiffness = k}}}) ==
             doctest::Approx(std::sqrt(solver.eigenvalues()[1])).epsilon(1e-12));
     }
-  }
 }
 
 TEST_CASE("the lagged limit is that of the contact between free masses when the wall is stiff") {
-  for (double e : {1.0, 0.8, 0.6, 0.2, 0.0}) {
+  for (double e : {1.0, 0.8, 0.6, 0.2, 0.0})
     for (double nu : {0.02, 1.0}) {
       const Scene scene{.dampers = {{.mass_ratio = nu, .restitution = e, .wall_stiffness = 1e10}}};
       const double omega = omega_m(scene.damper()) * std::sqrt(1 + nu),
@@ -191,7 +189,6 @@ TEST_CASE("the lagged limit is that of the contact between free masses when the 
       CHECK(stability_limit(scene, Damper::lagged, Calibration::fixed_wall) ==
             doctest::Approx(2 * (std::sqrt(1 + z * z) - z) / omega).epsilon(1e-9));  // of order nu/k
     }
-  }
 }
 
 TEST_CASE(
@@ -231,7 +228,7 @@ TEST_CASE("beyond the limit an undamped mode grows as fast as the difference equ
 }
 
 TEST_CASE("a pressed contact rings up just above the limit and dies away just below it") {
-  for (double e : {0.6, 0.95}) {
+  for (double e : {0.6, 0.95})
     for (Damper damper : {Damper::centred, Damper::lagged}) {
       // x < 0 presses the mass to the left wall by about nu x / (k (1 + nu)); begun 2 % off that.
       Scene scene{.x0 = -1000, .until_time = 0.8, .dampers = {{.restitution = e}}};
@@ -252,7 +249,6 @@ TEST_CASE("a pressed contact rings up just above the limit and dies away just be
       CHECK(ringing(0.97 * limit) < 0.021);
       CHECK(ringing(1.03 * limit) > 1);
     }
-  }
 }
 
 TEST_CASE("a step beyond the stability limit is rejected with the step, the limit and the way out") {
@@ -269,9 +265,8 @@ TEST_CASE("a step beyond the stability limit is rejected with the step, the limi
   CAPTURE(message);
   for (const char* part : {"time_step", "0.003", "0.00280055", "714.143", "centred", "contact", "--unstable"})
     CHECK(contains(message, part));
-  for (double h : {0.0, -1e-3, double(NAN), double(INFINITY)}) {
+  for (double h : {0.0, -1e-3, double(NAN), double(INFINITY)})
     CHECK_THROWS_AS(simulated(scene, {.time_step = h, .unstable = true}, {}), std::invalid_argument);
-  }
 }
 
 TEST_CASE("an unstable run that overflows ends in a numerical failure") {
@@ -407,9 +402,8 @@ TEST_CASE("not located, a step from one wall through to beyond the other is an i
   const std::array<double, period> y{0.5, -3.5, -4, -0.5, 3.5, 5, 2.5, -1.5, -4, -2.5, 1.5, 5, 4.5};
   // An impact gives the primary mass 2 nu w = 8 h, which in 130 steps could take it 1e-9 away.
   REQUIRE(run.history->dampers[0].y.size() == periods * period + 1);
-  for (int n = 0; n <= periods * period; ++n) {
+  for (int n = 0; n <= periods * period; ++n)
     CHECK(run.history->dampers[0].y[n] == doctest::Approx(y[n % period]).epsilon(1e-9));
-  }
   REQUIRE(run.impacts->time.size() == 4 * periods);
   REQUIRE(run.contacts->begin.size() == 4 * periods);
   for (int i = 0; i < 4 * periods; ++i) {
@@ -451,8 +445,8 @@ TEST_CASE("over one impact the energy balance's residual is of second order, loc
 TEST_CASE(
     "over a decay with located events the energy balance closes with second order, with the stuck regime, "
     "too") {
-  for (const std::optional<double> stuck_speed : {std::optional<double>(), std::optional(0.3)}) {
-    for (double zeta : {0.0, 0.008}) {
+  for (const std::optional<double> stuck_speed : {std::optional<double>(), std::optional(0.3)})
+    for (double zeta : {0.0, 0.008})
       for (double force : {0.0, 0.3}) {
         const Scene scene{
             .damping_ratio = zeta, .force_amplitude = force, .force_frequency = 0.8, .until_time = 12};
@@ -476,8 +470,6 @@ TEST_CASE(
         CHECK(residual[0] < 1e-5);
         check_order(residual, 2);
       }
-    }
-  }
 }
 
 TEST_CASE("energy never rises unforced, from sample to sample, beyond the scheme's own error") {
@@ -697,7 +689,7 @@ TEST_CASE("both masses move by equation (9) and part where x'' changes its sign,
   constexpr int neighbours = 16;
   for (const bool two_rates : {false, true}) {
     std::array<double, 3> x{}, v{}, time{};
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < 3; ++i)
       for (int j = 0; j < neighbours; ++j) {
         const double h = (0.02 + 0.002 * j / neighbours) / (1 << i);
         Cem options{.time_step = h, .stuck_speed = always};
@@ -713,7 +705,6 @@ TEST_CASE("both masses move by equation (9) and part where x'' changes its sign,
         CHECK(run.history->dampers[0].w[0] == 0);
         CHECK(run.impacts->time.empty());
       }
-    }
     CAPTURE(two_rates);
     check_order(x, 2);
     check_order(v, 2);
@@ -1116,7 +1107,7 @@ TEST_CASE("damped and forced too, a change of step during rest is wrong by no mo
   // - 2 zeta x'') were left out of the velocity handed on, or went in twice, the position would be an order
   // worse.
   constexpr int steps = 4;
-  for (double zeta : {0.0, 0.4}) {
+  for (double zeta : {0.0, 0.4})
     for (double force : {0.0, 0.3}) {
       if (zeta == 0 && force == 0) continue;
       const auto errors = [&](double large) -> std::array<double, 2> {  // of x, of v
@@ -1141,11 +1132,10 @@ TEST_CASE("damped and forced too, a change of step during rest is wrong by no mo
       for (std::size_t i = 0; i < 2; ++i)
         CHECK(order(coarse[i], fine[i], 8) == doctest::Approx(i == 0 ? 4 : 3).epsilon(0.1));
     }
-  }
 }
 
 TEST_CASE("with two rates the energy balance closes with second order") {
-  for (double zeta : {0.0, 0.008}) {
+  for (double zeta : {0.0, 0.008})
     for (double force : {0.0, 0.3}) {
       const Scene scene{
           .damping_ratio = zeta, .force_amplitude = force, .force_frequency = 0.8, .until_time = 12};
@@ -1163,7 +1153,6 @@ TEST_CASE("with two rates the energy balance closes with second order") {
       CHECK(coarse < 5e-4);
       CHECK(order(coarse, fine, 8) == doctest::Approx(2).epsilon(0.2));
     }
-  }
 }
 
 TEST_CASE("long steps in a long contact, of a heavy mass too, leave the energy as small ones do") {
@@ -1175,9 +1164,8 @@ TEST_CASE("long steps in a long contact, of a heavy mass too, leave the energy a
     const Run one = simulate(scene, Cem{.locate = true}, everything());
     const Run two = simulate(scene, Cem{.locate = true, .large_step = 0.02}, everything());
     double longest = 0;
-    for (std::size_t i = 0; i < two.contacts->end.size(); ++i) {
+    for (std::size_t i = 0; i < two.contacts->end.size(); ++i)
       longest = std::max(longest, two.contacts->end[i] - two.contacts->begin[i]);
-    }
     CHECK(longest > 1);
     CAPTURE(mass_ratio);
     CHECK(std::abs(two.energy->residual - one.energy->residual) < 2e-6);
@@ -1284,14 +1272,12 @@ TEST_CASE(
   };
   CHECK(message(scene, {.large_step = 1.9999}) == not_rejected);
   CHECK(message(driven, {.large_step = 0.314}) == not_rejected);
-  for (double large : {5e-5, 1e-4, 2.0}) {
+  for (double large : {5e-5, 1e-4, 2.0})
     CHECK(
         message(scene, {.time_step = 1e-4, .large_step = large}).starts_with("large_step: must be > 0.0001"));
-  }
-  for (double large : {0.0, -1.0, double(NAN), double(INFINITY)}) {
+  for (double large : {0.0, -1.0, double(NAN), double(INFINITY)})
     CHECK(message(scene, {.time_step = 1e-4, .large_step = large})
               .starts_with("large_step: must be > 0 and finite, got "));
-  }
   CHECK(message(driven, {.large_step = 0.315}) ==
         "large_step: must be <= 0.314158, half a period of the forcing, got 0.315");
   // Less than two small ones, and more than can be counted.

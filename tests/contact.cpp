@@ -15,8 +15,8 @@
 #include "impact_damper/motion/lead.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/simulate.hpp"
-#include "list_of_one.hpp"
 #include "reference.hpp"
+#include "shared_scenes.hpp"
 
 using namespace impact_damper;
 using reference::Quad;
@@ -27,20 +27,25 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 double magnitude(Quad x) { return double(reference::absolute(x)); }
 
-// x, v, q, w after a time t of contact: equations (5)-(8) as one linear system, with the force as two more
-// unknowns and q scaled so that all entries are of the order of the wall's frequency.
+// Equations (5)-(8) as one linear system of x, v, s q and w, with the force as two more unknowns; with s the
+// wall's frequency all entries are of its order.
+reference::Matrix<6> contact_matrix(Quad nu, Quad k, Quad c, Quad zeta, Quad f0, Quad omega, Quad s) {
+  return {{{0, 1, 0, 0, 0, 0},
+           {-1, -2 * zeta, nu * k / s, nu * c, f0, 0},
+           {0, 0, 0, s, 0, 0},
+           {1, 2 * zeta, -(1 + nu) * k / s, -(1 + nu) * c, -f0, 0},
+           {0, 0, 0, 0, 0, omega},
+           {0, 0, 0, 0, -omega, 0}}};
+}
+
+// x, v, q, w after a time t of contact.
 template <class Real>
 std::array<Quad, 4> shifted(const ContactModes<Real>& wall, const std::array<double, 4>& from, double begin,
                             double t) {
   const Quad nu = wall.nu, k = wall.stiffness, c = wall.damping, zeta = wall.zeta;
   const Quad f0 = wall.forcing.amplitude, omega = wall.forcing.frequency;
   const Quad s = std::sqrt(double(wall.stiffness));
-  const reference::Matrix<6> a{{{0, 1, 0, 0, 0, 0},
-                                {-1, -2 * zeta, nu * k / s, nu * c, f0, 0},
-                                {0, 0, 0, s, 0, 0},
-                                {1, 2 * zeta, -(1 + nu) * k / s, -(1 + nu) * c, -f0, 0},
-                                {0, 0, 0, 0, 0, omega},
-                                {0, 0, 0, 0, -omega, 0}}};
+  const auto a = contact_matrix(nu, k, c, zeta, f0, omega, s);
   const auto phase = reference::exponential<2>({{{0, omega}, {-omega, 0}}}, begin);
   const auto u = reference::applied<6>(reference::exponential(a, t),
                                        {from[0], from[1], from[2] * s, from[3], phase[0][1], phase[1][1]});
@@ -240,13 +245,8 @@ CommonError common_error(const Scene& scene) {
              c = 2 * damping_ratio * root(k);
   const Quad zeta = scene.damping_ratio, f0 = scene.force_amplitude, omega = scene.force_frequency;
   const Quad s = std::sqrt(double(k));
-  const reference::Matrix<6> a{{{0, 1, 0, 0, 0, 0},
-                                {-1, -2 * zeta, nu * k / s, nu * c, f0, 0},
-                                {0, 0, 0, s, 0, 0},
-                                {1, 2 * zeta, -(1 + nu) * k / s, -(1 + nu) * c, -f0, 0},
-                                {0, 0, 0, 0, 0, omega},
-                                {0, 0, 0, 0, -omega, 0}}};
-  const reference::Matrix<6> until_T = reference::exponential(a, T);
+  const reference::Matrix<6> a = contact_matrix(nu, k, c, zeta, f0, omega, s),
+                             until_T = reference::exponential(a, T);
   reference::Random random(717);
   CommonError sum{0, 0, 0};
   double contacts = 0;
@@ -278,9 +278,9 @@ CommonError common_error(const Scene& scene) {
 }  // namespace
 
 TEST_CASE("errors that are the same in every short contact are well below a rounding") {
-  for (double nu : {0.05, 0.37, 3.1}) {
-    for (double e : {0.6, 1.0}) {
-      for (double stiffness : {1.3e4, 1e6, 1e8}) {
+  for (double nu : {0.05, 0.37, 3.1})
+    for (double e : {0.6, 1.0})
+      for (double stiffness : {1.3e4, 1e6, 1e8})
         for (bool driven : {false, true}) {
           Scene scene{.dampers = {{.mass_ratio = nu, .restitution = e, .wall_stiffness = stiffness * nu}}};
           if (driven) scene.damping_ratio = 0.02, scene.force_amplitude = 1, scene.force_frequency = 0.9;
@@ -291,13 +291,10 @@ TEST_CASE("errors that are the same in every short contact are well below a roun
           CHECK(std::abs(error.w) < 0.1);
           CHECK(std::abs(error.time) < 0.05);
         }
-      }
-    }
-  }
 }
 
 TEST_CASE("a single impact delivers the restitution of the effective damping ratio zeta_m sqrt(1 + nu)") {
-  for (double nu : {1e-6, 0.02, 0.3, 5.0}) {
+  for (double nu : {1e-6, 0.02, 0.3, 5.0})
     for (double e : {0.2, 0.6, 0.9, 1.0}) {
       const Scene scene{.dampers = {{.mass_ratio = nu, .restitution = e, .wall_stiffness = 1e14}}};
       const double z = zeta_m_closed_form(e) * std::sqrt(1 + nu);
@@ -314,7 +311,6 @@ TEST_CASE("a single impact delivers the restitution of the effective damping rat
             allowed + part * part / 8);
       CHECK(std::abs(impact_of(scene, Calibration::two_body).restitution - e) < allowed);
     }
-  }
   Scene paper{.dampers = {{.wall_stiffness = 1e14}}};
   CHECK(impact_of(paper, Calibration::fixed_wall).restitution ==
         doctest::Approx(0.597).epsilon(5e-4 / 0.597));
@@ -363,15 +359,9 @@ TEST_CASE("a flight that dies away loses all its energy to its damper, in howeve
 
 namespace {
 
-struct LongContact {
+// Contacts that ring through hundreds to thousands of swings in their time, however pressed the masses are.
+Scene random_contact(reference::Random& random) {
   Scene scene;
-  double duration;
-};
-
-// Contacts that ring through hundreds to thousands of swings, however pressed the masses are.
-LongContact random_contact(reference::Random& random) {
-  LongContact contact;
-  Scene& scene = contact.scene;
   scene.damper().mass_ratio = random.log_uniform(1e-3, 10);
   scene.damper().restitution = random.chance(0.3) ? 1 : random.uniform(0.1, 1);
   scene.damper().wall_stiffness = random.log_uniform(1e3, 1e5);
@@ -380,8 +370,8 @@ LongContact random_contact(reference::Random& random) {
     scene.force_amplitude = random.log_uniform(1e-2, 10);
     scene.force_frequency = random.chance(0.3) ? 1 : random.log_uniform(0.1, 4);
   }
-  contact.duration = random.uniform(5, 20);
-  return contact;
+  scene.until_time = random.uniform(5, 20);
+  return scene;
 }
 
 }  // namespace
@@ -389,9 +379,8 @@ LongContact random_contact(reference::Random& random) {
 TEST_CASE("a long contact's works are those of a quadrature that follows all its ringing") {
   reference::Random random(31);
   for (int n = 0; n < 200; ++n) {
-    const LongContact drawn = random_contact(random);
-    const Scene& scene = drawn.scene;
-    const double duration = drawn.duration;
+    const Scene scene = random_contact(random);
+    const double duration = *scene.until_time;
     const System<double> system(scene);
     const ContactModes<double> walls(system, zeta_m<double>(scene.damper(), Calibration::fixed_wall));
     const double begin = random.uniform(0, 10), root_k = std::sqrt(walls.stiffness);

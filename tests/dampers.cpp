@@ -13,7 +13,6 @@
 #include "impact_damper/engines/cem_scheme.hpp"
 #include "impact_damper/motion/impact_law.hpp"
 #include "impact_damper/simulate.hpp"
-#include "list_of_one.hpp"
 #include "reference.hpp"
 #include "same_run.hpp"
 #include "scenes.hpp"
@@ -333,7 +332,7 @@ TEST_CASE("a list of one damper is the scene with that damper, by the component 
       CHECK(farthest(list.history->dampers[0].y, one.history->dampers[0].y) <= 1e-10);
       CHECK(farthest(list.history->dampers[0].w, one.history->dampers[0].w) <= 1e-8);
     }
-    for (const auto& all : {ways, further_ways}) {
+    for (const auto& all : {ways, further_ways})
       for (const Cem& options : all) {
         CAPTURE(&options - all.data());
         Cem of_list = options;
@@ -346,7 +345,6 @@ TEST_CASE("a list of one damper is the scene with that damper, by the component 
         CHECK(list.half_cycles->dampers.front().impacts == one.half_cycles->impacts);
         CHECK(list.impacts->damper == std::vector<std::int32_t>(one.impacts->time.size()));
       }
-    }
   }
 }
 
@@ -397,7 +395,7 @@ TEST_CASE("budgets end a list of one where they end the scene with that damper")
 }
 
 TEST_CASE("a clearance of a power of two is another unit of length, to the bit") {
-  for (const double c : {0.25, 4.0}) {
+  for (const double c : {0.25, 4.0})
     for (const Cem& options : ways) {
       Scene scene = single[1], wide = scene;
       SceneDamper& damper = wide.dampers.front();
@@ -413,7 +411,6 @@ TEST_CASE("a clearance of a power of two is another unit of length, to the bit")
         CHECK(c * run.half_cycles->amplitude[i] == its.half_cycles->amplitude[i]);
       CHECK(c * c * run.energy->final.total() == its.energy->final.total());
     }
-  }
 }
 
 TEST_CASE("the parts of a damper, with their shares of its wall, are that damper") {

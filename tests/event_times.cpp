@@ -766,7 +766,6 @@ TEST_CASE("the next turn of a secondary mass at rest away from the walls is foun
 
 namespace {
 
-
 // The second root finder: the first time in [from, to] at which g lies below -depth, by samples, by the
 // minimum (bisection of g') wherever g' turns from falling to rising between two samples, and by bisection.
 // It needs samples so dense that g' turns at most once between two of them.
@@ -857,9 +856,7 @@ void hold(const Curve& c, double horizon, double& evaluations) {
   INFO("c.c0 ", c.c0, ", c.c1 ", c.c1, ", c.c2 ", c.c2, ", c.c3 ", c.c3, ", c.a ", c.a, ", c.w ", c.w);
   INFO("c.p ", c.p, ", horizon ", horizon);
   const double t = found ? found->time : horizon, resolved = 4 * epsilon * (t + 1 / c.w);
-  if (found) {
-    CHECK(std::abs(c.g(Long(t))) <= noise + resolved * std::abs(c.g1(t)));
-  }
+  if (found) CHECK(std::abs(c.g(Long(t))) <= noise + resolved * std::abs(c.g1(t)));
   if (below) CHECK(t <= *below + resolved);
 }
 

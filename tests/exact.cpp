@@ -112,7 +112,7 @@ TEST_CASE("an overdamped primary mass creeps back and crosses zero at most once"
 }
 
 TEST_CASE("a forced primary mass follows the textbook solution, at resonance too") {
-  for (double zeta : {0.0, 0.1}) {
+  for (double zeta : {0.0, 0.1})
     for (double omega : {0.5, 1.0, 1.7}) {
       Scene scene = without_contact(0, 0, 40, zeta);
       scene.force_amplitude = 0.02, scene.force_frequency = omega;
@@ -133,7 +133,6 @@ TEST_CASE("a forced primary mass follows the textbook solution, at resonance too
       }
       CHECK(std::abs(run.energy->residual) < 1e-13);
     }
-  }
 }
 
 TEST_CASE("row 0 runs from the release to the first zero crossing, an unfinished half cycle is no row") {
@@ -248,9 +247,8 @@ TEST_CASE(
   scene.damper().w0 = -1;
   const Run left = simulate(scene, Exact{}, everything());
   REQUIRE(right.half_cycles->amplitude.size() == left.half_cycles->amplitude.size());
-  for (std::size_t n = 0; n < left.half_cycles->amplitude.size(); ++n) {
+  for (std::size_t n = 0; n < left.half_cycles->amplitude.size(); ++n)
     CHECK(left.half_cycles->amplitude[n] == doctest::Approx(right.half_cycles->amplitude[n]).epsilon(1e-12));
-  }
 }
 
 TEST_CASE("energy never rises unforced and the energy balance closes, over many scenes") {

@@ -35,7 +35,7 @@ TEST_CASE("every engine runs with the arithmetic that a process starts with") {
 }
 
 TEST_CASE("no engine runs with another rounding mode, and each does again once it is back") {
-  for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
+  for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO})
     for (const Engine& engine : engines) {
       std::fesetround(mode);
       const std::string text = rejection(engine);
@@ -43,7 +43,6 @@ TEST_CASE("no engine runs with another rounding mode, and each does again once i
       CHECK(contains(text, "the rounding mode is not to nearest"));
       CHECK(rejection(engine) == not_rejected);
     }
-  }
 }
 
 #ifdef __SSE2__

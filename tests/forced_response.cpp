@@ -111,7 +111,7 @@ TEST_CASE(
 
   // Of each motion, by a long run of the engine from the state that it ends in.
   int periodic = 0;
-  for (const ResponsePoint& point : response.points) {
+  for (const ResponsePoint& point : response.points)
     for (const ArrivedMotion* motion : {&point.rising, &point.falling}) {
       REQUIRE(motion->is_known());
       const double amplitude = largest_amplitude(simulate(going_on(scene, point, *motion, 200), Exact{}, {}));
@@ -124,7 +124,6 @@ TEST_CASE(
       }
       CHECK(amplitude <= 1.01 * largest->motion.amplitude());
     }
-  }
   CHECK(periodic > 20);
 
   // At the scene's own frequency, by a plain integration.
@@ -168,7 +167,7 @@ TEST_CASE("where the two ways differ each motion keeps its own amplitude in a fu
   const ForcedResponse response = response_of(scene);
   const std::vector<PointRange> ranges = response.two_motions();
   REQUIRE(!ranges.empty());
-  for (const PointRange& range : ranges) {
+  for (const PointRange& range : ranges)
     for (std::size_t i = range.first; i <= range.last; ++i) {
       const ResponsePoint& point = response.points[i];
       for (const auto& [own, other] :
@@ -178,7 +177,6 @@ TEST_CASE("where the two ways differ each motion keeps its own amplitude in a fu
         CHECK(own->earlier_amplitude.has_value() != own->is_periodic());
       }
     }
-  }
 }
 
 TEST_CASE("two motions differ by more than a twentieth and by more than three times their scatter") {

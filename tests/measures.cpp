@@ -101,7 +101,7 @@ TEST_CASE("measures of closed forms are those of theory") {
 }
 
 TEST_CASE("a wall delivers the closed form's restitution, to a moving primary mass too") {
-  for (double e : {0.3, 0.6, 0.9}) {
+  for (double e : {0.3, 0.6, 0.9})
     for (double nu : {1e-9, 0.02, 0.5}) {
       // zeta_m is of a fixed wall. The primary mass's own spring takes part to the order of 1/k.
       const double z = zeta_m_closed_form(e) * std::sqrt(1 + nu);
@@ -109,7 +109,6 @@ TEST_CASE("a wall delivers the closed form's restitution, to a moving primary ma
       CHECK(value("wall_restitution", {{"mass_ratio", nu}, {"restitution", e}}) ==
             doctest::Approx(delivered).epsilon(2 * nu * 1e-4 + 1e-8));
     }
-  }
 }
 
 TEST_CASE("the iterative damping ratio errs by what the closed form says of it") {

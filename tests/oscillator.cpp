@@ -61,7 +61,7 @@ TEST_CASE_TEMPLATE("the solutions from rest keep their relative accuracy for sho
     const Oscillator<Real> oscillator(a, b);
     // C - 1 and S - t do not turn back while the slower of the two rates has not acted.
     const double slow = a * a > b ? b / (a + std::sqrt(a * a - b)) : std::sqrt(b);
-    for (double scaled : times) {
+    for (double scaled : times)
       for (double t : {scaled / double(oscillator.rate()), scaled / slow}) {
         if (t * slow > 0.6) continue;
         const Expected expected = solutions(a, b, t);
@@ -73,7 +73,6 @@ TEST_CASE_TEMPLATE("the solutions from rest keep their relative accuracy for sho
         CHECK(magnitude(p.c1 - expected.c1) <= 16 * epsilon * magnitude(expected.c1));
         CHECK(magnitude(p.s1 - expected.s1) <= 32 * epsilon * magnitude(expected.s1));
       }
-    }
   }
 }
 
@@ -84,7 +83,7 @@ TEST_CASE_TEMPLATE("over long times the solutions are as accurate as the argumen
     const double a = damping.a, b = damping.b;
     const Oscillator<Real> oscillator(a, b);
     const double slow = a * a > b ? b / (a + std::sqrt(a * a - b)) : a > 0 ? a : std::sqrt(b);
-    for (double scaled : {0.5, 1.0, 3.0, 10.0, 30.0, 100.0, 1e4}) {
+    for (double scaled : {0.5, 1.0, 3.0, 10.0, 30.0, 100.0, 1e4})
       for (double t : {scaled / double(oscillator.rate()), scaled / slow}) {
         if (a * t > 1e6 || (a > 0 && slow * t > 40)) continue;
         const Expected expected = solutions(a, b, t);
@@ -101,7 +100,6 @@ TEST_CASE_TEMPLATE("over long times the solutions are as accurate as the argumen
         CHECK(magnitude(p.c - expected.c) <= roundings * of_c);
         CHECK(magnitude(p.v - expected.v) <= 2 * roundings * of_v);
       }
-    }
   }
 }
 
@@ -119,7 +117,7 @@ TEST_CASE_TEMPLATE("the driven response from rest is right at, near and away fro
       if (omega <= 0) continue;
       const Oscillator<Real> oscillator(a, 1);
       const Forcing<Real> forcing{Real(0.7), Real(omega)};
-      for (double begin : {0.0, 0.8, 41.3}) {
+      for (double begin : {0.0, 0.8, 41.3})
         for (double t : {1e-8, 1e-3, 0.3, 0.6, 2.0, 11.0, 300.0}) {
           const ExpectedResponse expected = driven(a, 1, 0.7, omega, begin, t);
           const DrivenResponse<Real> found =
@@ -133,7 +131,6 @@ TEST_CASE_TEMPLATE("the driven response from rest is right at, near and away fro
           CHECK(magnitude(found.d - expected.d) <= roundings * most);
           CHECK(magnitude(found.d1 - expected.d1) <= roundings * most1);
         }
-      }
     }
   }
 }
@@ -143,8 +140,8 @@ TEST_CASE_TEMPLATE("the series of a motion under a force is the motion, as long 
   const double epsilon = double(std::numeric_limits<Real>::epsilon());
   reference::Random random(41);
   double most = 0;
-  for (double a : {0.0, 1e-12, 1e-3, 0.01, 0.3, 0.99, 1.0, 1.01, 2.0}) {
-    for (double b : {1.0, 0.98, 1e-4}) {
+  for (double a : {0.0, 1e-12, 1e-3, 0.01, 0.3, 0.99, 1.0, 1.01, 2.0})
+    for (double b : {1.0, 0.98, 1e-4})
       for (double omega : {1e-6, 0.2, 0.5, 0.988, 1.0, 1.4, 5.0, 60.0, 1e6}) {
         const Oscillator<Real> oscillator(a, b);
         const DrivenSeriesTable<Real> table(oscillator, Real(omega));
@@ -171,8 +168,6 @@ TEST_CASE_TEMPLATE("the series of a motion under a force is the motion, as long 
           }
         }
       }
-    }
-  }
   MESSAGE("largest error of x'' ", most, " roundings");
 }
 

@@ -42,7 +42,7 @@ const std::vector<Scene> many_scenes{
 TEST_CASE(
     "an impact keeps the momentum, turns the relative velocity into -e times it and loses the stated "
     "energy") {
-  for (double nu : {1e-6, 0.02, 1.0, 40.0}) {
+  for (double nu : {1e-6, 0.02, 1.0, 40.0})
     for (double e : {0.0, 0.3, 0.6, 1.0}) {
       const Scene scene{.x0 = 0,
                         .until_time = 0.5 + 1e-9,
@@ -58,7 +58,6 @@ TEST_CASE(
       CHECK(run.energy->impact_loss[0] == doctest::Approx(nu * (1 - e * e) / (2 * (1 + nu))).epsilon(1e-15));
       CHECK(std::abs(run.energy->residual) < 1e-15);
     }
-  }
 }
 
 TEST_CASE("bouncing to rest ends after 2 w / (a (1 - e)) under a constant relative acceleration") {
@@ -325,7 +324,7 @@ TEST_CASE("where an impact throws x back, its height then is the half cycle's am
 TEST_CASE("x thrown back just as it comes to zero begins no half cycle by rounding") {
   // Released from the left wall at x0 = 1, the secondary mass flies straight and is at the right one when x
   // is zero; a heavy one turns the primary mass back there. Rounding puts x on either side.
-  for (int n = -4; n <= 4; ++n) {
+  for (int n = -4; n <= 4; ++n)
     for (double nu = 2; nu < 1e6; nu *= 1.1) {
       const Scene scene{.x0 = 1 + n * std::numeric_limits<double>::epsilon(),
                         .until_time = 1.6,
@@ -334,7 +333,6 @@ TEST_CASE("x thrown back just as it comes to zero begins no half cycle by roundi
       REQUIRE(run.impacts->time.size() == 1);
       for (double amplitude : run.half_cycles->amplitude) CHECK(amplitude > 0.5);
     }
-  }
 }
 
 TEST_CASE("a fast light mass costs the primary mass's speed no digits") {

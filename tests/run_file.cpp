@@ -34,28 +34,17 @@ namespace {
 using Lines = std::vector<std::string>;
 using Json = nlohmann::ordered_json;
 
-Engine lagged_cem() {
-  Cem engine{.time_step = 1e-4, .damper = Damper::lagged, .budget = {.max_time = 1e6}};
-  return engine;
-}
+const Engine lagged_cem = Cem{.time_step = 1e-4, .damper = Damper::lagged, .budget = {.max_time = 1e6}};
 
-Engine cem_of_two_rates() {
-  Cem engine{
-      .time_step = 1e-4, .locate = true, .large_step = 0.1, .stuck_speed = 0.02, .budget = {.max_time = 1e6}};
-  return engine;
-}
+const Engine cem_of_two_rates = Cem{
+    .time_step = 1e-4, .locate = true, .large_step = 0.1, .stuck_speed = 0.02, .budget = {.max_time = 1e6}};
 
-Engine two_body_exact() {
-  Exact engine{.calibration = Calibration::two_body, .budget = {.max_time = 1e6}};
-  return engine;
-}
+const Engine two_body_exact = Exact{.calibration = Calibration::two_body, .budget = {.max_time = 1e6}};
 
-Engine restitution_on_a_budget() {
-  Restitution engine{.accumulation_tolerance = 1e-5, .budget = {3, 4, 5.5}, .max_steps = 6};
-  return engine;
-}
+const Engine restitution_on_a_budget =
+    Restitution{.accumulation_tolerance = 1e-5, .budget = {3, 4, 5.5}, .max_steps = 6};
 
-Run full_run(Engine engine = lagged_cem()) {
+Run full_run(const Engine& engine = lagged_cem) {
   Run run;
   run.stop_reason = StopReason::impact_budget;
   run.end_time = 7.25;
@@ -93,6 +82,13 @@ Lines problems(const std::string& text) {
     return error.problems();
   }
   return {};
+}
+// Of a text with one change, which must be one problem.
+std::string only_problem(const std::string& text, const std::string& old, const std::string& by) {
+  CAPTURE(old);
+  const Lines found = problems(replaced(text, old, by));
+  REQUIRE(found.size() == 1);
+  return found[0];
 }
 
 }  // namespace
@@ -232,7 +228,7 @@ TEST_CASE("in SI every column of the CSV is multiplied by its own unit, and its 
 }
 
 TEST_CASE("a run that is read and written again has the same bytes, whatever its engine and sections") {
-  for (const Engine& engine : {two_body_exact(), restitution_on_a_budget(), cem_of_two_rates(),
+  for (const Engine& engine : {two_body_exact, restitution_on_a_budget, cem_of_two_rates,
                                Engine(Cem{.time_step = 1e-5, .budget = {.max_time = 1e6}})}) {
     Run run = full_run(engine);
     CHECK(run_text(parse_run("r.json", run_text(run))) == run_text(run));
@@ -289,7 +285,7 @@ TEST_CASE("each option of each engine survives the file, and one that is out of 
 }
 
 TEST_CASE("a file of before the searches' steps were an option was made with the usual ones") {
-  for (const Engine& engine : {two_body_exact(), Engine(Restitution{.budget = {.max_time = 1e6}})}) {
+  for (const Engine& engine : {two_body_exact, Engine(Restitution{.budget = {.max_time = 1e6}})}) {
     std::string text = replaced(run_text(full_run(engine)), "\"max_steps\": 10000000, ", "");
     text = sealed(text.substr(0, text.rfind(seal_begin)));
     CHECK(parse_run("r.json", text).engine == engine);
@@ -312,9 +308,8 @@ TEST_CASE("every bit of a number survives the file") {
   run.history->v = run.history->dampers[0].y = run.history->dampers[0].w = run.history->time;
   const std::vector<double> back = parse_run("r.json", run_text(run)).history->x;
   REQUIRE(back.size() == x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) {
+  for (std::size_t i = 0; i < x.size(); ++i)
     CHECK(std::bit_cast<std::uint64_t>(back[i]) == std::bit_cast<std::uint64_t>(x[i]));
-  }
 }
 
 TEST_CASE("any other byte makes another digest, which is told unless something plainer is") {
@@ -349,22 +344,20 @@ TEST_CASE("a file whose content was changed and that is sealed anew is read") {
 }
 
 TEST_CASE("SHA-256 is that of the standard's examples, at every length about a block's") {
-  // FIPS 180-4's examples, and a million times "a".
-  CHECK(sha256("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  CHECK(sha256("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-  CHECK(sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq") ==
-        "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
-  CHECK(sha256(std::string(1'000'000, 'a')) ==
-        "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
-  // 119 bytes are the most that two blocks hold beside the end, 120 the least that three do (Python's
-  // hashlib).
-  CHECK(sha256(std::string(119, '\xff')) ==
-        "b863f94597d433ef2280e3b4656f13ea265a79bb8047287321c218905b03c99b");
-  CHECK(sha256(std::string(120, '\xff')) ==
-        "9088fee917e5a748c2f0b4f5458c1cbdabbd696291c69be6e605bae0ef779e8f");
-  CHECK(sha256(std::string(64, '\0')) == "f5a5fd42d16a20302798ef6ed309979b43003d2320d9f0e8ea9831a92759fb4b");
-  CHECK(sha256(std::string(55, 'x')) == "d5e285683cd4efc02d021a5c62014694958901005d6f71e89e0989fac77e4072");
-  CHECK(sha256(std::string(56, 'x')) == "04c26261370ee7541549d16dee320c723e3fd14671e66a099afe0a377c16888e");
+  // FIPS 180-4's examples, a million times "a", and by Python's hashlib: 119 bytes are the most that two
+  // blocks hold beside the end, 120 the least that three do.
+  const std::string two_blocks = "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq";
+  for (const auto& [text, digest] : std::vector<std::pair<std::string, std::string>>{
+           {"abc", "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"},
+           {"", "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"},
+           {two_blocks, "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1"},
+           {std::string(1'000'000, 'a'), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0"},
+           {std::string(119, '\xff'), "b863f94597d433ef2280e3b4656f13ea265a79bb8047287321c218905b03c99b"},
+           {std::string(120, '\xff'), "9088fee917e5a748c2f0b4f5458c1cbdabbd696291c69be6e605bae0ef779e8f"},
+           {std::string(64, '\0'), "f5a5fd42d16a20302798ef6ed309979b43003d2320d9f0e8ea9831a92759fb4b"},
+           {std::string(55, 'x'), "d5e285683cd4efc02d021a5c62014694958901005d6f71e89e0989fac77e4072"},
+           {std::string(56, 'x'), "04c26261370ee7541549d16dee320c723e3fd14671e66a099afe0a377c16888e"}})
+    CHECK(sha256(text) == digest);
 }
 
 TEST_CASE("a run with energies has a loss for each impact, none less and none more") {
@@ -389,10 +382,7 @@ TEST_CASE("a number that is not finite is never written") {
 TEST_CASE("a run file that was changed by hand is rejected with the place and the reason") {
   const std::string text = run_text(full_run());
   const auto only = [&](const std::string& old, const std::string& by) {
-    CAPTURE(old);
-    const Lines found = problems(replaced(text, old, by));
-    REQUIRE(found.size() == 1);
-    return found[0];
+    return only_problem(text, old, by);
   };
   CHECK(only("run/1", "run/2") ==
         "r.json: /schema: must be one of \"impact-damper/run/1\", got the string \"impact-damper/run/2\"");
@@ -524,8 +514,7 @@ void check_same(const Run& a, const Run& b) {
 }  // namespace
 
 TEST_CASE("each entry of a run reads back as it was, be it absent, zero or neither") {
-  for (const Engine& engine :
-       {two_body_exact(), restitution_on_a_budget(), lagged_cem(), cem_of_two_rates()}) {
+  for (const Engine& engine : {two_body_exact, restitution_on_a_budget, lagged_cem, cem_of_two_rates}) {
     Run run = full_run(engine);
     check_same(parse_run("run.json", run_text(run)), run);
     run.scene = {0.3, 5, 6, 9, 10, 11, {}, {{0.1, 0.2, 1, 4, 0.7, 8}}};
@@ -557,7 +546,7 @@ TEST_CASE("a run file says which program made it") {
 namespace {
 
 Run run_of_several() {
-  Run run = full_run(restitution_on_a_budget());
+  Run run = full_run(restitution_on_a_budget);
   run.scene.dampers = {{.mass_ratio = 0.1, .clearance = 1, .y0 = 0.5}, {.restitution = 1, .clearance = 0.25}};
   run.half_cycles->dampers = {{{1, 0}}, {{2, 0}}};
   run.impacts->damper = {0, 1, 1};
@@ -624,10 +613,7 @@ TEST_CASE("a run of several dampers reads back as it was") {
 TEST_CASE("columns of dampers that are not those of the scene are rejected") {
   const std::string text = run_text(run_of_several());
   const auto only = [&](const std::string& old, const std::string& by) {
-    CAPTURE(old);
-    const Lines found = problems(replaced(text, old, by));
-    REQUIRE(found.size() == 1);
-    return found[0];
+    return only_problem(text, old, by);
   };
   CHECK(only("\"damper\": [1,2,2]", "\"damper\": [1,2,3]") ==
         "r.json: /impacts/damper/2: must be a whole number >= 1 and <= 2, got 3");

@@ -151,9 +151,8 @@ TEST_CASE("the project's catalogue has Figures 1 to 15, A to H, from eight disti
 
   REQUIRE(catalogue.scenes.size() == 8);
   std::set<std::string> distinct;
-  for (const CatalogueScene& scene : catalogue.scenes) {
+  for (const CatalogueScene& scene : catalogue.scenes)
     distinct.insert(scene_text(read_scene(source / "data/scenes" / (scene.name + ".json"))));
-  }
   CHECK(distinct.size() == 8);
 }
 
@@ -213,9 +212,8 @@ TEST_CASE("a viscous decay has the loss factor 2 zeta, and no loss is left for t
     CHECK(curve.columns[1].values[i] == doctest::Approx(2 * zeta).epsilon(1.1 * bias));
   }
   const Table impacts_only = figure_table(loss_figure(LossOrdinate::specific_secondary), runs);
-  for (const double value : block(impacts_only, "curve-1").columns[1].values) {
+  for (const double value : block(impacts_only, "curve-1").columns[1].values)
     CHECK(std::abs(value) <= 2 * zeta / 0.02 * 1.1 * bias);
-  }
   CHECK_FALSE(has_block(total, "one-impact-1"));  // the closed forms are for zeta = 0
 }
 

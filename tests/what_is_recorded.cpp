@@ -85,13 +85,12 @@ constexpr std::uint64_t first_seed = 1, seeds = 250;
 // `property` of a trial, told as text where it does not hold, for so many random and round scenes.
 template <class Choice, class Property>
 void holds_for(Property&& property) {
-  for (const bool round : {false, true}) {
+  for (const bool round : {false, true})
     for (std::uint64_t seed = first_seed; seed < first_seed + seeds; ++seed) {
       Trial trial = trial_of<Choice>(seed, round);
       const std::string failure = property(trial);
       if (!failure.empty()) FAIL_CHECK(trial.text << "\n" << failure);
     }
-  }
 }
 
 Record everything(const Scene& scene) { return reference::everything({{0, *scene.until_time, 51}}); }
@@ -297,10 +296,9 @@ std::string mirrors_but_for_rounding(Trial& trial) {
                                             : absent;
   };
   double parted = absent;  // when
-  for (const auto& [name, times, scale] : all) {
+  for (const auto& [name, times, scale] : all)
     for (std::size_t i = 0; i < run.at(name).size(); ++i)
       if (rounding(name, i) > 1e-7 * scale) parted = std::min(parted, run.at(times)[i]);
-  }
   for (const auto& [name, times, scale] : all) {
     double most = 0x1p-48 * std::max(scale, 1.0);  // of what has come until now
     for (std::size_t i = 0; i < run.at(name).size() && run.at(times)[i] < parted; ++i) {
@@ -400,7 +398,7 @@ TEST_CASE(
   for (Scene scene : scenes) {
     scene.until_time = 0.5;
     CAPTURE(scene_text(scene));
-    for (const Scene& start : {scene, mirrored(scene)}) {
+    for (const Scene& start : {scene, mirrored(scene)})
       for (bool locate : {false, true}) {
         const Run run = simulate(start, Cem{.locate = locate}, record);
         CHECK(run.impacts->time.empty());
@@ -415,7 +413,6 @@ TEST_CASE(
         CHECK(left.impacts->time.empty());
         CHECK(left.contacts->begin.empty());
       }
-    }
   }
 }
 

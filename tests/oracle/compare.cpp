@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "impact_damper/simulate.hpp"
-#include "list_of_one.hpp"
+#include "shared_scenes.hpp"
 
 namespace oracle {
 namespace {

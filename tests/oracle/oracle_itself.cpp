@@ -79,7 +79,7 @@ TEST_CASE("an undamped flight is a cosine, with its crossings and peaks where th
 }
 
 TEST_CASE("damped and forced flights are what their closed forms say, at any damping") {
-  for (const double zeta : {0.1, 0.5, 1.5, 40.0}) {
+  for (const double zeta : {0.1, 0.5, 1.5, 40.0})
     for (const double omega : {0.01, 1.0, 30.0}) {
       INFO("zeta ", zeta, ", omega ", omega);
       Question question = flight(3);
@@ -108,7 +108,6 @@ TEST_CASE("damped and forced flights are what their closed forms say, at any dam
       }
       CHECK(double(magnitude(answer.residual())) < 1e-28);
     }
-  }
 }
 
 TEST_CASE("a rigid wall gives back e times the relative velocity and keeps the momentum") {
@@ -194,8 +193,8 @@ TEST_CASE("a chattering whose bounces become slower than rounding is complete") 
 }
 
 TEST_CASE("the energy balance closes in decays with impacts, contacts, force and damping") {
-  for (const Walls walls : {Walls::compliant, Walls::rigid}) {
-    for (const double zeta : {0.0, 0.3, 3.0}) {
+  for (const Walls walls : {Walls::compliant, Walls::rigid})
+    for (const double zeta : {0.0, 0.3, 3.0})
       for (const double force : {0.0, 1.0}) {
         const Scene scene{
             .damping_ratio = zeta, .force_amplitude = force, .force_frequency = 0.7, .until_time = 12};
@@ -205,8 +204,6 @@ TEST_CASE("the energy balance closes in decays with impacts, contacts, force and
         CHECK(answer.impacts.size() >= 2);
         CHECK(double(magnitude(answer.residual()) / answer.initial.total()) < 1e-28);
       }
-    }
-  }
 }
 
 TEST_CASE("the mirrored scene has the mirrored run") {

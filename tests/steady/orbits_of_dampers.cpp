@@ -11,7 +11,7 @@
 #include "forced_scene.hpp"
 #include "impact_damper/orbits/branches.hpp"
 #include "impact_damper/simulate.hpp"
-#include "list_of_one.hpp"
+#include "shared_scenes.hpp"
 #include "reference.hpp"
 #include "same_run.hpp"
 
