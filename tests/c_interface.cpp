@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -55,9 +56,8 @@ std::size_t same_numbers(const impact_damper_run* run, const std::string& name,
                          const nlohmann::ordered_json& value) {
   std::size_t count = 0;
   if (value.is_object()) {
-    for (const auto& item : value.items()) {
+    for (const auto& item : value.items())
       count += same_numbers(run, name.empty() ? item.key() : name + "/" + item.key(), item.value());
-    }
     return count;
   }
   const nlohmann::ordered_json column = value.is_array() ? value : nlohmann::ordered_json::array({value});
@@ -99,6 +99,24 @@ std::vector<std::string> names_of(const impact_damper_run* run) {
   return names;
 }
 
+// A run that goes away with its owner.
+struct Freed {
+  void operator()(impact_damper_run* run) const { impact_damper_free(run); }
+};
+using Owned = std::unique_ptr<impact_damper_run, Freed>;
+Owned run_of(const char* scene, const char* engine = "exact", const impact_damper_window* history = nullptr) {
+  impact_damper_run* run = nullptr;
+  REQUIRE(impact_damper_simulate(scene, engine, history, &run, nullptr, 0) == IMPACT_DAMPER_DONE);
+  return Owned(run);
+}
+std::string text_of(const impact_damper_run* run) {
+  char* const text = impact_damper_run_text(run);
+  REQUIRE(text != nullptr);
+  const std::string copy = text;
+  std::free(text);
+  return copy;
+}
+
 std::string error_of(const char* scene, const char* engine, const impact_damper_window* history = nullptr,
                      std::size_t size = 500) {
   std::string text(size, '#');
@@ -111,46 +129,36 @@ std::string error_of(const char* scene, const char* engine, const impact_damper_
 }  // namespace
 
 TEST_CASE("a number too small for a double is zero in C as on the command line, one too large is rejected") {
-  impact_damper_run *tiny = nullptr, *zero = nullptr;
-  for (const auto& [scene, run] : {std::pair(R"({"x0": 1e-400, "v0": 1, "until_time": 8})", &tiny),
-                                   std::pair(R"({"x0": 0, "v0": 1, "until_time": 8})", &zero)})
-    REQUIRE(impact_damper_simulate(scene, "exact", nullptr, run, nullptr, 0) == IMPACT_DAMPER_DONE);
+  const Owned tiny = run_of(R"({"x0": 1e-400, "v0": 1, "until_time": 8})"),
+              zero = run_of(R"({"x0": 0, "v0": 1, "until_time": 8})");
   std::size_t rows = 0, wanted = 0;
-  const double *of_tiny = impact_damper_column(tiny, "impacts/time", &rows),
-               *of_zero = impact_damper_column(zero, "impacts/time", &wanted);
+  const double *of_tiny = impact_damper_column(tiny.get(), "impacts/time", &rows),
+               *of_zero = impact_damper_column(zero.get(), "impacts/time", &wanted);
   CHECK(wanted > 0);
   CHECK(std::vector(of_tiny, of_tiny + rows) == std::vector(of_zero, of_zero + wanted));
-  impact_damper_free(tiny);
-  impact_damper_free(zero);
   CHECK(error_of(R"({"x0": 1e400, "until_time": 8})", "exact").starts_with("scene: line 1, column 12: "));
   CHECK(error_of(R"({"x0": 1, "until_time": 8})", R"({"name": "cem", "time_step": 1e-400})") ==
         error_of(R"({"x0": 1, "until_time": 8})", R"({"name": "cem", "time_step": 0.0})"));
 }
 
 TEST_CASE("C is told the averaged loss factor and where bounce-down ended") {
-  const auto run_of = [](const char* scene) {
-    impact_damper_run* run = nullptr;
-    REQUIRE(impact_damper_simulate(scene, "exact", nullptr, &run, nullptr, 0) == IMPACT_DAMPER_DONE);
-    return run;
-  };
-  impact_damper_run* run =
-      run_of(R"({"mass_ratio": 0.1, "restitution": 0.4, "x0": 6, "until_amplitude": 0.5})");
+  const Owned decay = run_of(R"({"mass_ratio": 0.1, "restitution": 0.4, "x0": 6, "until_amplitude": 0.5})");
   const Run wanted =
       simulate({.x0 = 6, .until_amplitude = 0.5, .dampers = {{.mass_ratio = 0.1, .restitution = 0.4}}},
                Exact{}, {.contacts = true});
   const LossFactor loss = averaged_loss_factor(*wanted.half_cycles);
   std::vector<double> amplitude(wanted.half_cycles->amplitude.size()), time = amplitude, eta = amplitude;
-  const std::size_t rows = impact_damper_loss_factor(run, amplitude.data(), time.data(), eta.data());
+  const std::size_t rows = impact_damper_loss_factor(decay.get(), amplitude.data(), time.data(), eta.data());
   REQUIRE(rows > 10);
   for (std::vector<double>* column : {&amplitude, &time, &eta}) column->resize(rows);
   CHECK(amplitude == loss.amplitude);
   CHECK(time == loss.time);
   CHECK(eta == loss.eta);
   std::size_t rows_of_it = 0;
-  CHECK(impact_damper_bounce_down_end(run) == end_of_bounce_down(wanted).value().amplitude);
-  impact_damper_free(run);
+  CHECK(impact_damper_bounce_down_end(decay.get()) == end_of_bounce_down(wanted).value().amplitude);
 
   // What is not recorded is not there.
+  impact_damper_run* run = nullptr;
   REQUIRE(impact_damper_simulate_recording(R"({"x0": 6, "until_time": 30})", "exact", IMPACT_DAMPER_IMPACTS,
                                            nullptr, &run, nullptr, 0) == IMPACT_DAMPER_DONE);
   CHECK(impact_damper_column(run, "impacts/time", &rows_of_it) != nullptr);
@@ -159,38 +167,28 @@ TEST_CASE("C is told the averaged loss factor and where bounce-down ended") {
   CHECK(std::isnan(impact_damper_bounce_down_end(run)));
   impact_damper_free(run);
 
-  run = run_of(R"({"x0": 0.1, "until_time": 8})");
-  CHECK(impact_damper_loss_factor(run, amplitude.data(), time.data(), eta.data()) == 0);
-  CHECK(std::isnan(impact_damper_bounce_down_end(run)));
-  impact_damper_free(run);
-  run = run_of(
-      R"({"dampers": [{"mass_ratio": 0.1, "restitution": 0.4}, {"clearance": 2}], "x0": 6, "until_amplitude": 0.5})");
-  CHECK(std::isnan(impact_damper_bounce_down_end(run)));
-  impact_damper_free(run);
+  const Owned low = run_of(R"({"x0": 0.1, "until_time": 8})"), list = run_of(R"({"dampers": [
+      {"mass_ratio": 0.1, "restitution": 0.4}, {"clearance": 2}], "x0": 6, "until_amplitude": 0.5})");
+  CHECK(impact_damper_loss_factor(low.get(), amplitude.data(), time.data(), eta.data()) == 0);
+  CHECK(std::isnan(impact_damper_bounce_down_end(low.get())));
+  CHECK(std::isnan(impact_damper_bounce_down_end(list.get())));
 }
 
 TEST_CASE("every number of a run file is a column for C, with the same bits") {
   const impact_damper_window window = {0, 50, 101};
   const auto check = [&](const char* scene, const char* name, const Engine& engine) {
-    CAPTURE(scene);
-    CAPTURE(name);
-    impact_damper_run* run = nullptr;
-    REQUIRE(impact_damper_simulate(scene, name, &window, &run, nullptr, 0) == IMPACT_DAMPER_DONE);
-    Record record{.impacts = true, .contacts = true, .energy = true};
-    record.history = {{0, 50, 101}};
+    INFO("scene ", scene, ", name ", name);
+    const Owned run = run_of(scene, name, &window);
+    const Record record{.impacts = true, .contacts = true, .energy = true, .history = {{0, 50, 101}}};
     const SceneFile read = parse_scene_file("scene", scene);
     const std::string wanted = run_text(simulate(read.scene, engine, record), read.scales);
-    char* const text = impact_damper_run_text(run);
-    REQUIRE(text != nullptr);
-    CHECK(text == wanted);
-    std::free(text);
+    CHECK(text_of(run.get()) == wanted);
 
     auto file = numbered(nlohmann::ordered_json::parse(wanted));
-    CHECK(file["stop_reason"] == impact_damper_stop_reason(run));
+    CHECK(file["stop_reason"] == impact_damper_stop_reason(run.get()));
     for (const char* key : {"schema", "scene", "engine", "stop_reason", "provenance"}) file.erase(key);
-    CHECK(same_numbers(run, "", file) > 700);
-    CHECK(names_of(run) == names_in(file, ""));
-    impact_damper_free(run);
+    CHECK(same_numbers(run.get(), "", file) > 700);
+    CHECK(names_of(run.get()) == names_in(file, ""));
   };
   check(forced, "exact", Exact{});
   check(forced, "restitution", Restitution{});
@@ -201,23 +199,16 @@ TEST_CASE("every number of a run file is a column for C, with the same bits") {
 }
 
 TEST_CASE("an engine's options are those of a run file, each with its default") {
-  const auto text_of_run = [](const char* engine) {
-    impact_damper_run* run = nullptr;
-    REQUIRE(impact_damper_simulate(forced, engine, nullptr, &run, nullptr, 0) == IMPACT_DAMPER_DONE);
-    char* const text = impact_damper_run_text(run);
-    std::string copy = text;
-    std::free(text);
-    impact_damper_free(run);
-    return copy;
-  };
+  const auto text_of_run = [](const char* engine) { return text_of(run_of(forced, engine).get()); };
   const auto wanted = [](const Engine& engine) {
     return run_text(
         simulate(parse_scene("scene", forced), engine, {.impacts = true, .contacts = true, .energy = true}));
   };
   CHECK(text_of_run(R"({"name": "exact"})") == wanted(Exact{}));
   CHECK(text_of_run(R"({"name": "cem"})") == wanted(Cem{}));
-  Exact exact{.calibration = Calibration::two_body, .max_steps = 9000};
-  exact.budget = {.max_impacts = 70, .max_half_cycles = 11, .max_time = 40};
+  const Exact exact{.calibration = Calibration::two_body,
+                    .budget = {.max_impacts = 70, .max_half_cycles = 11, .max_time = 40},
+                    .max_steps = 9000};
   CHECK(text_of_run(R"({"name": "exact", "calibration": "two-body", "max_steps": 9000, "max_impacts": 70,
                         "max_half_cycles": 11, "max_time": 40})") == wanted(exact));
   Restitution restitution{.accumulation_tolerance = 1e-5};
@@ -237,16 +228,12 @@ TEST_CASE("an engine's options are those of a run file, each with its default") 
 }
 
 TEST_CASE("what is not recorded is no column, and an empty column is one") {
-  impact_damper_run* run = nullptr;
-  REQUIRE(impact_damper_simulate(R"({"x0": 0.1, "y0": 0.5, "until_time": 1})", "exact", nullptr, &run,
-                                 nullptr, 0) == IMPACT_DAMPER_DONE);
-  std::size_t rows = 7;
-  CHECK(impact_damper_column(run, "history/x", &rows) == nullptr);
-  CHECK(rows == 0);
-  rows = 7;
-  CHECK(impact_damper_column(run, "impacts/time", &rows) != nullptr);
-  CHECK(rows == 0);
-  impact_damper_free(run);
+  const Owned run = run_of(R"({"x0": 0.1, "y0": 0.5, "until_time": 1})");
+  for (const auto& [name, is_there] : {std::pair{"history/x", false}, {"impacts/time", true}}) {
+    std::size_t rows = 7;
+    CHECK((impact_damper_column(run.get(), name, &rows) != nullptr) == is_there);
+    CHECK(rows == 0);
+  }
   impact_damper_free(nullptr);
 }
 

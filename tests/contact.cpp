@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -11,8 +12,11 @@
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/motion/contact_work.hpp"
 #include "impact_damper/motion/flight.hpp"
+#include "impact_damper/motion/lead.hpp"
 #include "impact_damper/motion/wall.hpp"
+#include "impact_damper/simulate.hpp"
 #include "reference.hpp"
+#include "shared_scenes.hpp"
 
 using namespace impact_damper;
 using reference::Quad;
@@ -23,20 +27,25 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 double magnitude(Quad x) { return double(reference::absolute(x)); }
 
-// x, v, q, w after a time t of contact: equations (5)-(8) as one linear system, with the force as two more
-// unknowns and q scaled so that all entries are of the order of the wall's frequency.
+// Equations (5)-(8) as one linear system of x, v, s q and w, with the force as two more unknowns; with s the
+// wall's frequency all entries are of its order.
+reference::Matrix<6> contact_matrix(Quad nu, Quad k, Quad c, Quad zeta, Quad f0, Quad omega, Quad s) {
+  return {{{0, 1, 0, 0, 0, 0},
+           {-1, -2 * zeta, nu * k / s, nu * c, f0, 0},
+           {0, 0, 0, s, 0, 0},
+           {1, 2 * zeta, -(1 + nu) * k / s, -(1 + nu) * c, -f0, 0},
+           {0, 0, 0, 0, 0, omega},
+           {0, 0, 0, 0, -omega, 0}}};
+}
+
+// x, v, q, w after a time t of contact.
 template <class Real>
 std::array<Quad, 4> shifted(const ContactModes<Real>& wall, const std::array<double, 4>& from, double begin,
                             double t) {
   const Quad nu = wall.nu, k = wall.stiffness, c = wall.damping, zeta = wall.zeta;
   const Quad f0 = wall.forcing.amplitude, omega = wall.forcing.frequency;
   const Quad s = std::sqrt(double(wall.stiffness));
-  const reference::Matrix<6> a{{{0, 1, 0, 0, 0, 0},
-                                {-1, -2 * zeta, nu * k / s, nu * c, f0, 0},
-                                {0, 0, 0, s, 0, 0},
-                                {1, 2 * zeta, -(1 + nu) * k / s, -(1 + nu) * c, -f0, 0},
-                                {0, 0, 0, 0, 0, omega},
-                                {0, 0, 0, 0, -omega, 0}}};
+  const auto a = contact_matrix(nu, k, c, zeta, f0, omega, s);
   const auto phase = reference::exponential<2>({{{0, omega}, {-omega, 0}}}, begin);
   const auto u = reference::applied<6>(reference::exponential(a, t),
                                        {from[0], from[1], from[2] * s, from[3], phase[0][1], phase[1][1]});
@@ -68,8 +77,7 @@ TEST_CASE_TEMPLATE("the two quadratic factors give back the contact's characteri
                k = Real(scene.damper().wall_stiffness) / nu;
     const Real c = 2 * zeta_m_closed_form(Real(scene.damper().restitution)) * square_root(k);
     const ContactFactors<Real> f = factor_contact(nu, zeta, k, c);
-    CAPTURE(n);
-    CAPTURE(scene_text(scene));
+    INFO("n ", n, ", scene ", scene_text(scene));
     CHECK(f.p >= 0);
     CHECK(f.p2 >= 0);
     CHECK(f.b > 0);
@@ -116,10 +124,7 @@ TEST_CASE("contact moves as the coupled linear system does, for every wall, mass
                               magnitude(found.v - expected[1]) / (slow + share * fast),
                               magnitude(found.y - expected[2]) / (fast / root_k),
                               magnitude(found.w - expected[3]) / fast};
-    CAPTURE(n);
-    CAPTURE(scene_text(scene));
-    CAPTURE(t * rate);
-    CAPTURE(t);
+    INFO("n ", n, ", scene ", scene_text(scene), ", t * rate ", t * rate, ", t ", t);
     for (int i = 0; i < 4; ++i) {
       CAPTURE(i);
       CHECK(errors[i] <= 64 * roundings);
@@ -206,8 +211,7 @@ TEST_CASE("the velocities at the end of a short contact are off by a few roundin
       if (!end || !(std::abs(end->time * walls.fast.rate() - std::numbers::pi) < 0.5)) continue;
       ++contacts;
       const auto truth = shifted(walls, {x, v, 0, w}, begin, end->time);
-      CAPTURE(scene.damper().mass_ratio);
-      CAPTURE(x);
+      INFO("mass_ratio ", scene.damper().mass_ratio, ", x ", x);
       // 8 was seen for w, 5 for v; an impulse that acts on x has its rounding, too.
       CHECK(magnitude(truth[3] - Quad(end->state.w)) < 16 * 0x1p-53 * (-w + std::abs(x) * end->time));
       CHECK(magnitude(truth[1] - Quad(end->state.v)) <
@@ -241,13 +245,8 @@ CommonError common_error(const Scene& scene) {
              c = 2 * damping_ratio * root(k);
   const Quad zeta = scene.damping_ratio, f0 = scene.force_amplitude, omega = scene.force_frequency;
   const Quad s = std::sqrt(double(k));
-  const reference::Matrix<6> a{{{0, 1, 0, 0, 0, 0},
-                                {-1, -2 * zeta, nu * k / s, nu * c, f0, 0},
-                                {0, 0, 0, s, 0, 0},
-                                {1, 2 * zeta, -(1 + nu) * k / s, -(1 + nu) * c, -f0, 0},
-                                {0, 0, 0, 0, 0, omega},
-                                {0, 0, 0, 0, -omega, 0}}};
-  const reference::Matrix<6> until_T = reference::exponential(a, T);
+  const reference::Matrix<6> a = contact_matrix(nu, k, c, zeta, f0, omega, s),
+                             until_T = reference::exponential(a, T);
   reference::Random random(717);
   CommonError sum{0, 0, 0};
   double contacts = 0;
@@ -279,41 +278,28 @@ CommonError common_error(const Scene& scene) {
 }  // namespace
 
 TEST_CASE("errors that are the same in every short contact are well below a rounding") {
-  for (double nu : {0.05, 0.37, 3.1}) {
-    for (double e : {0.6, 1.0}) {
-      for (double stiffness : {1.3e4, 1e6, 1e8}) {
+  for (double nu : {0.05, 0.37, 3.1})
+    for (double e : {0.6, 1.0})
+      for (double stiffness : {1.3e4, 1e6, 1e8})
         for (bool driven : {false, true}) {
-          Scene scene;
-          scene.damper().mass_ratio = nu;
-          scene.damper().restitution = e;
-          scene.damper().wall_stiffness = stiffness * nu;
+          Scene scene{.dampers = {{.mass_ratio = nu, .restitution = e, .wall_stiffness = stiffness * nu}}};
           if (driven) scene.damping_ratio = 0.02, scene.force_amplitude = 1, scene.force_frequency = 0.9;
           const CommonError error = common_error(scene);
-          CAPTURE(nu);
-          CAPTURE(e);
-          CAPTURE(stiffness);
-          CAPTURE(driven);
+          INFO("nu ", nu, ", e ", e, ", stiffness ", stiffness, ", driven ", driven);
           // What averages out leaves about 0.03, 0.01 and 0.01 in the mean.
           CHECK(std::abs(error.energy) < 0.15);
           CHECK(std::abs(error.w) < 0.1);
           CHECK(std::abs(error.time) < 0.05);
         }
-      }
-    }
-  }
 }
 
 TEST_CASE("a single impact delivers the restitution of the effective damping ratio zeta_m sqrt(1 + nu)") {
-  for (double nu : {1e-6, 0.02, 0.3, 5.0}) {
+  for (double nu : {1e-6, 0.02, 0.3, 5.0})
     for (double e : {0.2, 0.6, 0.9, 1.0}) {
-      Scene scene;
-      scene.damper().mass_ratio = nu;
-      scene.damper().restitution = e;
-      scene.damper().wall_stiffness = 1e14;
+      const Scene scene{.dampers = {{.mass_ratio = nu, .restitution = e, .wall_stiffness = 1e14}}};
       const double z = zeta_m_closed_form(e) * std::sqrt(1 + nu);
       if (z > 0.99) continue;
-      CAPTURE(nu);
-      CAPTURE(e);
+      INFO("nu ", nu, ", e ", e);
       // In its short time, about pi sqrt(nu/k), the spring acts on the primary mass: relative order 1/K.
       const double allowed = 1e-11 + 100 * nu / scene.damper().wall_stiffness;
       const Impact fixed = impact_of(scene, Calibration::fixed_wall);
@@ -325,9 +311,7 @@ TEST_CASE("a single impact delivers the restitution of the effective damping rat
             allowed + part * part / 8);
       CHECK(std::abs(impact_of(scene, Calibration::two_body).restitution - e) < allowed);
     }
-  }
-  Scene paper;
-  paper.damper().wall_stiffness = 1e14;
+  Scene paper{.dampers = {{.wall_stiffness = 1e14}}};
   CHECK(impact_of(paper, Calibration::fixed_wall).restitution ==
         doctest::Approx(0.597).epsilon(5e-4 / 0.597));
   paper.damper().mass_ratio = 1e-6;  // a primary mass that stands still
@@ -340,9 +324,7 @@ TEST_CASE("a critically or overdamped wall gives nothing back until something pu
   // alone never comes back to the wall; here the primary mass, thrown to the right of x = 0, takes it along
   // until it has turned and x'' > 0 no longer presses.
   for (double nu : {1e-6, 0.5, 30.0}) {
-    Scene scene;
-    scene.damper().mass_ratio = nu;
-    scene.damper().restitution = 0;
+    const Scene scene{.dampers = {{.mass_ratio = nu, .restitution = 0}}};
     const System<double> system(scene);
     const ContactModes<double> walls(system, zeta_m<double>(scene.damper(), Calibration::fixed_wall));
     const Contact<double> contact(walls, 0.0, {-1, 0, 0, -1}, Wall::left);
@@ -361,8 +343,7 @@ TEST_CASE("a critically or overdamped wall gives nothing back until something pu
 
 TEST_CASE("a flight that dies away loses all its energy to its damper, in however long a time") {
   for (double zeta : {1e-3, 0.5, 0.9, 1.0, 1.1, 30.0, 1e6}) {
-    Scene scene;
-    scene.damping_ratio = zeta;
+    const Scene scene{.damping_ratio = zeta};
     const System<double> system(scene);
     for (double v : {0.0, -3.0}) {
       const Flight<double> flight(system, 0, {2, v, 0.5, 0});
@@ -370,8 +351,7 @@ TEST_CASE("a flight that dies away loses all its energy to its damper, in howeve
       const double duration = 40 * (2 * zeta + 1 / zeta);
       Search<double> search{1};
       const Work<double> works = work_of(system, flight, 0.0, duration, 0.0, search);
-      CAPTURE(zeta);
-      CAPTURE(v);
+      INFO("zeta ", zeta, ", v ", v);
       CHECK(std::abs(works.viscous / ((4 + v * v) / 2) - 1) < 2e-13);  // a sum of up to 2e5 terms
     }
   }
@@ -379,15 +359,9 @@ TEST_CASE("a flight that dies away loses all its energy to its damper, in howeve
 
 namespace {
 
-struct LongContact {
+// Contacts that ring through hundreds to thousands of swings in their time, however pressed the masses are.
+Scene random_contact(reference::Random& random) {
   Scene scene;
-  double duration;
-};
-
-// Contacts that ring through hundreds to thousands of swings, however pressed the masses are.
-LongContact random_contact(reference::Random& random) {
-  LongContact contact;
-  Scene& scene = contact.scene;
   scene.damper().mass_ratio = random.log_uniform(1e-3, 10);
   scene.damper().restitution = random.chance(0.3) ? 1 : random.uniform(0.1, 1);
   scene.damper().wall_stiffness = random.log_uniform(1e3, 1e5);
@@ -396,8 +370,8 @@ LongContact random_contact(reference::Random& random) {
     scene.force_amplitude = random.log_uniform(1e-2, 10);
     scene.force_frequency = random.chance(0.3) ? 1 : random.log_uniform(0.1, 4);
   }
-  contact.duration = random.uniform(5, 20);
-  return contact;
+  scene.until_time = random.uniform(5, 20);
+  return scene;
 }
 
 }  // namespace
@@ -405,9 +379,8 @@ LongContact random_contact(reference::Random& random) {
 TEST_CASE("a long contact's works are those of a quadrature that follows all its ringing") {
   reference::Random random(31);
   for (int n = 0; n < 200; ++n) {
-    const LongContact drawn = random_contact(random);
-    const Scene& scene = drawn.scene;
-    const double duration = drawn.duration;
+    const Scene scene = random_contact(random);
+    const double duration = *scene.until_time;
     const System<double> system(scene);
     const ContactModes<double> walls(system, zeta_m<double>(scene.damper(), Calibration::fixed_wall));
     const double begin = random.uniform(0, 10), root_k = std::sqrt(walls.stiffness);
@@ -419,8 +392,7 @@ TEST_CASE("a long contact's works are those of a quadrature that follows all its
     const Work<double> found = work_of(system, contact, begin, duration, wall_damping, search);
     const Work<double> expected =
         work_of<Contact<double>>(system, contact, begin, duration, wall_damping, search);
-    CAPTURE(n);
-    CAPTURE(scene_text(scene));
+    INFO("n ", n, ", scene ", scene_text(scene));
     // Energies are of order one; a swing's phase is rounded by epsilon times its number of radians.
     const double radians = walls.fast.rate() * duration;
     const double allowed = 1e-15 * (16 + radians) * (1 + expected.turnover);
@@ -449,4 +421,123 @@ TEST_CASE(
     CHECK(std::abs(found.zeta_m - zeta_m_closed_form(e)) < 4e-7);
     CHECK(std::abs(zeta_m_iterative(e, 1e-13).zeta_m - zeta_m_closed_form(e)) < 4e-12);
   }
+}
+
+// --- At rest on a wall where x'' and x''' vanish -----------------------------------------------------------
+
+// Which way it goes: docs/mathematics.md, 7.3.
+
+namespace {
+
+using Walls = std::vector<PushedWall<double>>;
+
+Lead<double> lead_at(const Forcing<double>& force, const SinCos<double>& phase, double zeta, double x,
+                     double v, const Walls& walls = {}) {
+  return lead_of_x<double>(2 * zeta, 1.0, force, phase, x, v, walls);
+}
+
+Run run_of(const Scene& scene, const Engine& engine) {
+  return simulate(scene, engine, {.impacts = true, .contacts = true, .energy = true});
+}
+
+}  // namespace
+
+TEST_CASE("the first derivative of x that is not zero to rounding leads") {
+  reference::Random random(1);
+  for (int i = 0; i < 1000; ++i) {
+    const Forcing<double> force{random.log_uniform(1e-6, 1e6) * random.sign(), random.log_uniform(1e-6, 1e3)};
+    const double zeta = random.log_uniform(1e-3, 1e3), angle = random.uniform(0.1, 1.4);
+    const SinCos<double> phase{std::sin(angle), std::cos(angle)};
+    const double f = force.amplitude * phase.sin, f1 = force.amplitude * force.frequency * phase.cos;
+    CAPTURE(i);
+
+    const Lead<double> second = lead_at(force, phase, zeta, -f, 0);
+    CHECK(second.order == 2);
+    CHECK(second.value == f + f);
+    const double v = 3 * f1;
+    const Lead<double> third = lead_at(force, phase, zeta, f - 2 * zeta * v, v);
+    CHECK(third.order == 3);
+    CHECK(third.value == doctest::Approx(f1 - v));
+    const Lead<double> fourth = lead_at(force, phase, zeta, f - 2 * zeta * f1, f1);
+    CHECK(fourth.order == 4);
+    CHECK(fourth.value == doctest::Approx(-force.frequency * force.frequency * f));
+    const double across = force.amplitude * force.frequency;
+    const Lead<double> fifth = lead_at(force, {0, 1}, zeta, -2 * zeta * across, across);
+    CHECK(fifth.order == 5);
+    CHECK(fifth.value == doctest::Approx(-force.frequency * force.frequency * across));
+  }
+  CHECK(lead_at({0, 1}, {0, 1}, 0.3, 0, 0).order == 0);
+}
+
+TEST_CASE("walls that others push lead x by later derivatives, or hold it for ever") {
+  // A wall without damping that is met with the speed w: x''' = nu K w + f0 omega_f, x^(5) = K f0 omega_f -
+  // f0 omega_f^3 if that is zero, and x stays at rest if omega_f^2 = K as well.
+  const double stiffness = 64, nu = 0.25, f0 = 3;
+  for (const double omega : {2.0, 8.0, 16.0}) {
+    const Walls wall{{nu, stiffness, 0, 0, -f0 * omega / (nu * stiffness)}};
+    const Lead<double> lead = lead_at({f0, omega}, {0, 1}, 0.125, 0, 0, wall);
+    CAPTURE(omega);
+    CHECK(lead.order == (omega == 8 ? 0u : 5u));
+    CHECK(lead.value == f0 * omega * (stiffness - omega * omega));
+  }
+}
+
+TEST_CASE(
+    "a mass at rest on a wall where y'' and y''' vanish sticks or leaves as the fifth derivative tells") {
+  reference::Random random(2);
+  for (int i = 0; i < 60; ++i) {
+    Scene scene;
+    scene.damper().mass_ratio = random.log_uniform(1e-3, 10);
+    scene.damper().restitution = i % 4 == 0 ? 0 : random.uniform(0.1, 0.9);
+    scene.damping_ratio = i % 3 == 0 ? 0 : random.log_uniform(1e-3, 2);
+    scene.damper().wall_stiffness = random.log_uniform(1e2, 1e8);
+    scene.force_amplitude = random.log_uniform(0.1, 10) * random.sign();
+    scene.force_frequency = random.log_uniform(0.2, 2);
+    scene.v0 = scene.force_amplitude * scene.force_frequency;
+    scene.x0 = -2 * scene.damping_ratio * scene.v0;
+    scene.damper().y0 = i % 2;
+    scene.until_time = 3 / scene.force_frequency;
+    // y^(5) = f0 omega_f^3.
+    const bool sticks = (scene.damper().y0 == 0) == (scene.force_amplitude < 0);
+    std::array<double, 2> parts{};  // when the mass leaves the wall, with either kind
+    for (const Engine& engine : {Engine(Restitution{}), Engine(Exact{})}) {
+      INFO("i ", i, ", engine ", name_of(engine));
+      const Run one = run_of(scene, engine), list = run_of(list_of_one(scene), engine);
+      for (const Run* run : {&one, &list}) {
+        CHECK(run->stop_reason == StopReason::time);
+        CHECK(run->impacts->time.size() < 200);
+        CHECK(std::fabs(run->energy->residual) < 1e-13);
+        if (sticks) {
+          REQUIRE(!run->contacts->begin.empty());
+          CHECK(run->contacts->begin[0] == 0);
+          CHECK(run->contacts->end[0] > 0.1 / scene.force_frequency);
+        }
+        // Nothing is met soon.
+        const double soon = sticks ? run->contacts->end[0] : 1e-2;
+        CHECK((run->impacts->time.empty() || run->impacts->time[0] > soon));
+      }
+      if (sticks) {
+        CHECK(std::fabs(one.contacts->end[0] - list.contacts->end[0]) < 1e-11);
+        parts[std::holds_alternative<Exact>(engine)] = one.contacts->end[0];
+      }
+    }
+    if (sticks && scene.damper().wall_stiffness > 1e4 * scene.damper().mass_ratio)
+      CHECK(std::fabs(parts[0] - parts[1]) <
+            20 * std::sqrt(scene.damper().mass_ratio / scene.damper().wall_stiffness));
+  }
+}
+
+TEST_CASE("the paper's stuck regime begins with a mass that the fifth derivative presses to its wall") {
+  const Scene scene{.x0 = 0,
+                    .v0 = 1,
+                    .force_amplitude = 1,
+                    .force_frequency = 1,
+                    .until_time = 1,
+                    .dampers = {{.mass_ratio = 1, .y0 = 1}}};
+  const Cem options{.stuck_speed = 0.01};
+  const Run run = run_of(scene, options);
+  CHECK(run.impacts->time.empty());
+  REQUIRE(run.contacts->begin.size() == 1);
+  CHECK(run.contacts->begin[0] == 0);
+  CHECK(run.contacts->end[0] == 1);
 }

@@ -74,16 +74,11 @@ TEST_CASE("with the fixed-wall calibration the two models stay apart, by the res
 }
 
 TEST_CASE("the displacement of an impact is x at its time, in each engine") {
-  Scene scene;
-  scene.damping_ratio = 0.01;
-  scene.force_amplitude = 0.2;
-  scene.until_time = 20;
-  Cem located;
-  located.locate = true;
+  const Scene scene{.damping_ratio = 0.01, .force_amplitude = 0.2, .until_time = 20};
+  const Cem located{.locate = true};
   for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{}), Engine(Cem{}), Engine(located)}) {
     CAPTURE(name_of(engine));
-    Record record;
-    record.impacts = true;
+    Record record{.impacts = true};
     const std::vector<double> times = simulate(scene, engine, record).impacts->time;
     REQUIRE(times.size() > 20);
     // The engine's own state there, as a sample: the last of a window that ends with the impact.
@@ -99,11 +94,8 @@ TEST_CASE("the displacement of an impact is x at its time, in each engine") {
 TEST_CASE("an undamped mass that is left behind is met where it was") {
   // z = x + y stays at x0 until the right wall comes, at x = x0 - 1, when cos t = 1 - 1/x0.
   for (const double x0 : {0.75, 1.5, 6.0, 1e3}) {
-    Scene scene;
-    scene.x0 = x0;
-    scene.until_time = 2.5;
-    Record record;
-    record.impacts = true;
+    const Scene scene{.x0 = x0, .until_time = 2.5};
+    const Record record{.impacts = true};
     for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})}) {
       const Impacts impacts = *simulate(scene, engine, record).impacts;
       REQUIRE(!impacts.time.empty());
@@ -131,10 +123,8 @@ TEST_CASE(
       .until_time = 6,
       .dampers = {{.mass_ratio = 2.041, .restitution = 1, .wall_stiffness = 235.8, .y0 = 1, .w0 = 1}}};
   for (const Scene& scene : {struck, overlapping, hit_later, lossless}) {
-    CAPTURE(scene.damper().y0);
-    CAPTURE(scene.damper().mass_ratio);
-    Cem steps;
-    steps.locate = true;
+    INFO("y0 ", scene.damper().y0, ", mass_ratio ", scene.damper().mass_ratio);
+    const Cem steps{.locate = true};
     const HalfCycles exact = *simulate(scene, Exact{}, {}).half_cycles;
     const HalfCycles cem = *simulate(scene, steps, {}).half_cycles;
     REQUIRE(exact.zero_crossing.size() == cem.zero_crossing.size());

@@ -13,7 +13,6 @@
 #include "impact_damper/engines/cem_scheme.hpp"
 #include "impact_damper/motion/impact_law.hpp"
 #include "impact_damper/simulate.hpp"
-#include "list_of_one.hpp"
 #include "reference.hpp"
 #include "same_run.hpp"
 #include "scenes.hpp"
@@ -333,7 +332,7 @@ TEST_CASE("a list of one damper is the scene with that damper, by the component 
       CHECK(farthest(list.history->dampers[0].y, one.history->dampers[0].y) <= 1e-10);
       CHECK(farthest(list.history->dampers[0].w, one.history->dampers[0].w) <= 1e-8);
     }
-    for (const auto& all : {ways, further_ways}) {
+    for (const auto& all : {ways, further_ways})
       for (const Cem& options : all) {
         CAPTURE(&options - all.data());
         Cem of_list = options;
@@ -346,7 +345,6 @@ TEST_CASE("a list of one damper is the scene with that damper, by the component 
         CHECK(list.half_cycles->dampers.front().impacts == one.half_cycles->impacts);
         CHECK(list.impacts->damper == std::vector<std::int32_t>(one.impacts->time.size()));
       }
-    }
   }
 }
 
@@ -397,7 +395,7 @@ TEST_CASE("budgets end a list of one where they end the scene with that damper")
 }
 
 TEST_CASE("a clearance of a power of two is another unit of length, to the bit") {
-  for (const double c : {0.25, 4.0}) {
+  for (const double c : {0.25, 4.0})
     for (const Cem& options : ways) {
       Scene scene = single[1], wide = scene;
       SceneDamper& damper = wide.dampers.front();
@@ -413,7 +411,6 @@ TEST_CASE("a clearance of a power of two is another unit of length, to the bit")
         CHECK(c * run.half_cycles->amplitude[i] == its.half_cycles->amplitude[i]);
       CHECK(c * c * run.energy->final.total() == its.energy->final.total());
     }
-  }
 }
 
 TEST_CASE("the parts of a damper, with their shares of its wall, are that damper") {
@@ -605,10 +602,11 @@ TEST_CASE("several dampers move as their Taylor series says") {
 }
 
 TEST_CASE("several that press their walls until these ring no more leave them when they should") {
-  Scene scene;
-  scene.x0 = -1, scene.damping_ratio = 0.05, scene.until_time = 3.5;
-  scene.dampers = {damper(0.05, 0.3, 3, 5000, 0, 0), damper(0.02, 0.2, 4, 4000, 0, 0),
-                   damper(0.3, 0.1, 5, 20000, 0, 0), damper(0.1, 0.4, 0.7, 900, 0.2, 0)};
+  const Scene scene{.damping_ratio = 0.05,
+                    .x0 = -1,
+                    .until_time = 3.5,
+                    .dampers = {damper(0.05, 0.3, 3, 5000, 0, 0), damper(0.02, 0.2, 4, 4000, 0, 0),
+                                damper(0.3, 0.1, 5, 20000, 0, 0), damper(0.1, 0.4, 0.7, 900, 0.2, 0)}};
   Scene shaken = scene;
   shaken.force_amplitude = 0.7, shaken.force_frequency = 0.9;
   Scene fast = scene;
@@ -623,10 +621,11 @@ TEST_CASE("several that press their walls until these ring no more leave them wh
 }
 
 TEST_CASE("walls far faster than others that are pressed with them follow these, once they ring no more") {
-  Scene scene;
-  scene.x0 = -1, scene.damping_ratio = 0.05, scene.until_time = 0.05;
-  scene.dampers = {damper(0.05, 0.6, 3, 200, 0, 0), damper(1e-6, 0.1, 4, 600, 0, 0),
-                   damper(0.02, 0.5, 2, 70, 0, 0)};
+  Scene scene{.damping_ratio = 0.05,
+              .x0 = -1,
+              .until_time = 0.05,
+              .dampers = {damper(0.05, 0.6, 3, 200, 0, 0), damper(1e-6, 0.1, 4, 600, 0, 0),
+                          damper(0.02, 0.5, 2, 70, 0, 0)}};
   Scene shaken = scene;
   shaken.force_amplitude = 3, shaken.force_frequency = 7;
   for (const Scene& each : {scene, shaken}) check_exact(run_of(each, Exact{}), reference_of(each));
@@ -639,10 +638,11 @@ TEST_CASE("walls far faster than others that are pressed with them follow these,
 
 TEST_CASE("that several press their walls is told late under a force as early") {
   // The phase of the force rounds the more the later it is: without regard to that no slow mode takes over.
-  Scene scene;
-  scene.damping_ratio = 0.05, scene.until_time = 20'000;
-  scene.force_amplitude = 0.3, scene.force_frequency = 0.7;
-  scene.dampers = {damper(0.05, 0.1, 0.3, 5000, 0, 0), damper(0.02, 0.1, 0.2, 2000, 0, 0)};
+  const Scene scene{.damping_ratio = 0.05,
+                    .force_amplitude = 0.3,
+                    .force_frequency = 0.7,
+                    .until_time = 20'000,
+                    .dampers = {damper(0.05, 0.1, 0.3, 5000, 0, 0), damper(0.02, 0.1, 0.2, 2000, 0, 0)}};
   const Exact options{.budget = {.max_impacts = 1'000'000, .max_half_cycles = 1'000'000},
                       .max_steps = 3'000'000};
   CHECK(simulate(scene, options, {}).stop_reason == StopReason::time);
@@ -651,8 +651,7 @@ TEST_CASE("that several press their walls is told late under a force as early") 
 TEST_CASE("several at rest on walls that only the third derivative presses in stay there") {
   // x'' = -2 zeta v0 - x0 is zero but for rounding, and x''' > 0.
   for (const double stiffness : {1e3, 1e7, 1e12}) {
-    Scene scene;
-    scene.damping_ratio = 0.05, scene.x0 = 0.07, scene.v0 = -0.7, scene.until_time = 4;
+    Scene scene{.damping_ratio = 0.05, .x0 = 0.07, .v0 = -0.7, .until_time = 4};
     scene.dampers.assign(2, damper(0.05, 0.6, 1, stiffness, 0, 0));
     Scene one = scene;
     one.dampers = {damper(0.1, 0.6, 1, 2 * stiffness, 0, 0)};
@@ -672,8 +671,7 @@ TEST_CASE("several at rest on walls that only the third derivative presses in st
 TEST_CASE("masses that meet their walls at the same instant, to the last bit, do so together") {
   // From rest at x0 on the left walls, masses of one clearance leave together and arrive together.
   for (std::size_t count = 2; count <= 10; ++count) {
-    Scene scene;
-    scene.x0 = 5, scene.until_time = 3;
+    Scene scene{.x0 = 5, .until_time = 3};
     scene.dampers.clear();
     for (std::size_t i = 0; i < count; ++i)
       scene.dampers.push_back(
@@ -758,9 +756,7 @@ TEST_CASE("masses that meet walls at one instant, by the law's own conditions") 
 }
 
 TEST_CASE("ten dampers that rest on their left walls leave them and meet them together") {
-  Scene scene;
-  scene.x0 = 6;
-  scene.until_time = 30;
+  Scene scene{.x0 = 6, .until_time = 30};
   scene.dampers.assign(10, {.mass_ratio = 0.002, .restitution = 0.6, .clearance = 1});
   Scene one = scene;
   one.dampers = {{.mass_ratio = 0.02, .restitution = 0.6, .clearance = 1}};
@@ -777,9 +773,7 @@ TEST_CASE("ten dampers that rest on their left walls leave them and meet them to
 }
 
 TEST_CASE("equal distances to the right walls of different cavities are met together") {
-  Scene scene;
-  scene.x0 = 6;
-  scene.until_time = 1;
+  Scene scene{.x0 = 6, .until_time = 1};
   // At rest at a distance of 0.25 from their right walls, towards which the cavities' x'' < 0 leads them.
   scene.dampers = {{.mass_ratio = 0.01, .clearance = 1, .y0 = 0.75},
                    {.mass_ratio = 0.01, .clearance = 1.5, .y0 = 1.25},
@@ -796,8 +790,7 @@ TEST_CASE("a mass that hardly arrives is at one instant with another that roundi
   const double time = std::asin(0.999);
   for (const double earlier : {1e-12, 1e-10}) {
     const double t = time - earlier;
-    Scene scene;
-    scene.x0 = -1, scene.until_time = 2;
+    Scene scene{.x0 = -1, .until_time = 2};
     scene.dampers = {{.mass_ratio = 0.02, .clearance = 0.5 + time - (1 - std::cos(time)), .y0 = 0.5, .w0 = 1},
                      {.mass_ratio = 0.02, .clearance = 10, .y0 = 3 * t + (1 - std::cos(t)), .w0 = -3}};
     const Run run = run_of(scene, rigid);
@@ -808,9 +801,7 @@ TEST_CASE("a mass that hardly arrives is at one instant with another that roundi
 
 TEST_CASE("sticking masses count to the primary mass, and leave together") {
   // Plastic dampers: both come to rest on the same wall, and are let go when x'' changes its sign.
-  Scene scene;
-  scene.x0 = 1;
-  scene.until_time = 20;
+  Scene scene{.x0 = 1, .until_time = 20};
   scene.dampers = {{.mass_ratio = 0.3, .restitution = 0, .clearance = 0.5},
                    {.mass_ratio = 0.2, .restitution = 0, .clearance = 0.8}};
   const Run run = run_of(scene, rigid);
@@ -829,9 +820,7 @@ TEST_CASE("sticking masses count to the primary mass, and leave together") {
 
 TEST_CASE("of masses that bounce together none is left behind to bounce for ever") {
   // At t = 3.38 eight of these chatter on one wall, of which six and seven, but not eight, can join at once.
-  Scene scene;
-  scene.x0 = 1;
-  scene.until_time = 3.4;
+  Scene scene{.x0 = 1, .until_time = 3.4};
   const double numbers[][3] = {{0.0009760000000000001, 0.5519604290848342, 1.1760412681610501},
                                {0.0017000000000000001, 0.6725785929029169, 0.8670030363656981},
                                {0.00049, 0.6781366644382792, 0.668568339180735},
@@ -863,8 +852,7 @@ TEST_CASE(
   // The wall meets it at 0. From then on it bounces on 1 + 10, and each bounce kicks the other off for a time
   // that is short; with a constant force this is a geometric sum, and x'' hardly changes.
   const double nu = 1e-6, e = 0.6, other = 10, w = 1e-4, x0 = 6;
-  Scene scene;
-  scene.x0 = x0, scene.until_time = 0.01;
+  Scene scene{.x0 = x0, .until_time = 0.01};
   scene.dampers = {{.mass_ratio = nu, .restitution = e, .y0 = 1, .w0 = w},
                    {.mass_ratio = other, .restitution = 0, .y0 = 1}};
   const double kept = e - (1 + e) * nu / (1 + nu) * other / (1 + other), acceleration = x0 / (1 + other);
@@ -878,8 +866,7 @@ TEST_CASE(
 }
 
 TEST_CASE("half cycles of many dampers take no more memory than those of one may") {
-  Scene scene;
-  scene.until_time = 1;
+  Scene scene{.until_time = 1};
   scene.dampers.assign(1000, {.mass_ratio = 1e-5});
   const auto allowed = [&](const Record& record) {
     return std::get<Restitution>(simulate(scene, Restitution{}, record).engine).budget.max_half_cycles;
@@ -891,8 +878,7 @@ TEST_CASE("half cycles of many dampers take no more memory than those of one may
 }
 
 TEST_CASE("what is not allowed of a list is said by its field") {
-  Scene scene;
-  scene.until_time = 1;
+  Scene scene{.until_time = 1};
   scene.dampers = {{}, {.clearance = 2, .y0 = 3}};
   CHECK(problem_of(scene, Restitution{}).starts_with("dampers[1].y0: "));
   scene.dampers[1].y0 = 2;
@@ -1013,8 +999,7 @@ TEST_CASE("the stability limit of a list is that of all masses in contact") {
     sum += damper.wall_stiffness / (square - damper.wall_stiffness / damper.mass_ratio);
   CHECK(std::abs(sum) < 1e-10);
   // The longest list of the heaviest masses runs with the default step.
-  Scene many;
-  many.until_time = 1e-3;
+  Scene many{.until_time = 1e-3};
   many.dampers.assign(1000, {.mass_ratio = 1e6, .wall_stiffness = 1e4});
   CHECK(run_of(many, Cem{}).stop_reason == StopReason::time);
 }
@@ -1041,8 +1026,8 @@ TEST_CASE("two masses stick and part as one with the primary mass, to their clos
   const double joined = v + nu_2 * w / all, end = touch + root * std::atan2(-x / root, joined);
   const double loss = both * nu_2 / all * w * w / 2;
   const double v_then = joined * std::cos(0.1 / root) - x / root * std::sin(0.1 / root);
-  Record record{.impacts = true, .contacts = true, .energy = true};
-  record.history = {{touch + 0.1, touch + 0.2, 2}};
+  const Record record{
+      .impacts = true, .contacts = true, .energy = true, .history = {{touch + 0.1, touch + 0.2, 2}}};
   for (const Cem& way : {Cem{}, Cem{.locate = true}, Cem{.large_step = 2e-2}}) {
     std::array<double, 3> time{}, speed{};
     for (int i = 0; i < 3; ++i) {

@@ -20,9 +20,7 @@ namespace {
 
 // A mast: 40 kg on 16 kN/m, 1.6 kg in a box with a clearance of 10 mm.
 Scene mast() {
-  Scene scene;
-  scene.damper().mass_ratio = 0.04;
-  scene.damping_ratio = 0.002;
+  Scene scene{.damping_ratio = 0.002, .dampers = {{.mass_ratio = 0.04}}};
   return scene;
 }
 
@@ -117,11 +115,7 @@ TEST_CASE(
   // The closed form is for nu -> 0. The mass lags behind the falling amplitude, by relatively more near the
   // fold.
   for (const double nu : {0.002, 0.004}) {
-    Scene scene;
-    scene.damper().mass_ratio = nu;
-    scene.x0 = 0.35;
-    scene.damper().w0 = 0.3;
-    scene.until_amplitude = 0.1;
+    const Scene scene{.x0 = 0.35, .until_amplitude = 0.1, .dampers = {{.mass_ratio = nu, .w0 = 0.3}}};
     const Run run = simulate(scene, Exact{}, {});
     const HalfCycles& rows = *run.half_cycles;
     const LossFactor loss = local_loss_factor(rows, 1, rows.amplitude.size());
@@ -165,10 +159,7 @@ TEST_CASE("force and duration of a contact are those of a stepped contact") {
   for (const double e : {0.001, 0.05, 0.1, 0.3, 0.6, 0.95, 1.0})
     for (const double nu : {0.01, 0.3})
       for (const double k : {1e4, 1e6}) {
-        Scene scene;
-        scene.damper().restitution = e;
-        scene.damper().mass_ratio = nu;
-        scene.damper().wall_stiffness = k;
+        const Scene scene{.dampers = {{.mass_ratio = nu, .restitution = e, .wall_stiffness = k}}};
         const double w = 0.7, decrement = -std::log(e);
         const double zeta_m = decrement / std::hypot(pi, decrement);
         const double c = 2 * std::sqrt(k / nu) * zeta_m;
@@ -197,8 +188,7 @@ TEST_CASE(
     "contacts of a run last as long as the closed form says, and their overlap makes the force it says") {
   Scene scene = mast();
   scene.until_time = 6.5;
-  Record record;
-  record.impacts = record.contacts = true;
+  Record record{.impacts = true, .contacts = true};
   Run run = simulate(scene, Exact{}, record);
   const double speed = std::abs(run.impacts->relative_velocity[0]);
   const ShortContact contact = short_contact(scene.damper(), Calibration::fixed_wall, speed);

@@ -36,10 +36,7 @@ std::vector<std::string> names(const std::vector<Drawing>& drawings) {
 }  // namespace
 
 TEST_CASE("the closed form drawn for a damped scene is that for zeta = 0 and 2 zeta on top") {
-  Scene scene;
-  scene.damper().mass_ratio = 0.03;
-  scene.damping_ratio = 0.004;
-  scene.until_amplitude = 0.05;
+  const Scene scene{.damping_ratio = 0.004, .until_amplitude = 0.05, .dampers = {{.mass_ratio = 0.03}}};
   const std::vector<Drawing> drawings = drawings_of(examined(scene));
   const TableBlock& form = block(drawings, "loss", "one-impact-1");
   // eta/nu = 4 b V^2 / (pi A^2), V the larger root of (pi^2 + 4 b^2) V^2 - 2 pi V + 1 - 4 A^2 = 0.
@@ -53,8 +50,7 @@ TEST_CASE("the closed form drawn for a damped scene is that for zeta = 0 and 2 z
 }
 
 TEST_CASE("a scene in units has its scales in every table, a dimensionless one in none") {
-  Scene scene;
-  scene.until_time = 60;
+  const Scene scene{.until_time = 60};
   for (const Drawing& drawing : drawings_of(examined(scene, Scales{2, 50, 4}))) {
     const TableBlock& scales = drawing.table.blocks.front();
     CHECK(scales.name == "scales");
@@ -67,9 +63,7 @@ TEST_CASE("a scene in units has its scales in every table, a dimensionless one i
 }
 
 TEST_CASE("what would be too much for a picture is thinned, and it is said how much") {
-  Scene scene;
-  scene.damper().restitution = 0.95;
-  scene.until_time = 9000;
+  const Scene scene{.until_time = 9000, .dampers = {{.restitution = 0.95}}};
   const Findings findings = examined(scene);
   REQUIRE(findings.run.impacts->time.size() > 8000);
   const std::vector<Drawing> drawings = drawings_of(findings);
@@ -83,9 +77,7 @@ TEST_CASE("what would be too much for a picture is thinned, and it is said how m
 }
 
 TEST_CASE("what a scene has nothing of is not drawn") {
-  Scene still;
-  still.x0 = 0;
-  still.until_time = 5;
+  const Scene still{.x0 = 0, .until_time = 5};
   CHECK(names(drawings_of(examined(still))) == std::vector<std::string>{"begin"});
   Scene forced = still;
   forced.force_amplitude = 0.1;
@@ -96,11 +88,7 @@ TEST_CASE("what a scene has nothing of is not drawn") {
 }
 
 TEST_CASE("each motion of the response is drawn once, the closed forms beside it where they are finite") {
-  Scene forced;
-  forced.x0 = 0;
-  forced.force_amplitude = 0.1;
-  forced.force_frequency = 1.02;
-  forced.until_time = 200;
+  const Scene forced{.x0 = 0, .force_amplitude = 0.1, .force_frequency = 1.02, .until_time = 200};
   const Findings findings = examined(forced);
   const std::vector<Drawing> drawings = drawings_of(findings);
   const auto response = std::ranges::find(drawings, "response", &Drawing::name);
@@ -132,9 +120,7 @@ TEST_CASE("each motion of the response is drawn once, the closed forms beside it
 }
 
 TEST_CASE("the loss factor is drawn up to impact failure, apart behind it, with the fold") {
-  Scene scene;
-  scene.damper().mass_ratio = 0.04;
-  scene.until_amplitude = 0.02;
+  const Scene scene{.until_amplitude = 0.02, .dampers = {{.mass_ratio = 0.04}}};
   const Findings findings = examined(scene);
   const std::vector<Drawing> drawings = drawings_of(findings);
   CHECK(block(drawings, "loss", "curve-1").columns[1].values == findings.loss.eta);
@@ -149,11 +135,7 @@ TEST_CASE("the loss factor is drawn up to impact failure, apart behind it, with 
 }
 
 TEST_CASE("from rest the releases differ in the exciting force") {
-  Scene forced;
-  forced.x0 = 0;
-  forced.force_amplitude = 0.1;
-  forced.damping_ratio = 0.05;
-  forced.until_time = 60;
+  const Scene forced{.damping_ratio = 0.05, .x0 = 0, .force_amplitude = 0.1, .until_time = 60};
   const Findings findings = examined(forced);
   CHECK(findings.others[0].scene.force_amplitude != 0.1);
   CHECK(std::ranges::max(findings.spread) > 0);

@@ -35,9 +35,8 @@ class Exact {
 
 double ulps(double got, Exact& exact) {
   const double nearest = mpfr_get_d(exact, MPFR_RNDN);
-  if (std::isnan(nearest) || std::isinf(nearest) || !std::isfinite(got)) {
+  if (std::isnan(nearest) || std::isinf(nearest) || !std::isfinite(got))
     return got == nearest || (std::isnan(got) && std::isnan(nearest)) ? 0 : HUGE_VAL;
-  }
   int exponent = -1021;
   if (std::fabs(nearest) >= std::numeric_limits<double>::min()) std::frexp(nearest, &exponent);
   Exact difference;

@@ -132,7 +132,7 @@ TEST_CASE("The angle of a point has its special values, in all quarters and on a
 
 TEST_CASE("Sine and angle are odd, cosine is even, to the last bit") {
   Sequence sequence;
-  for (const double scale : {1e-3, 1.0, 8.0, 1e3, 1e9, 1e200}) {
+  for (const double scale : {1e-3, 1.0, 8.0, 1e3, 1e9, 1e200})
     for (int i = 0; i < 2000; ++i) {
       const double x = scale * sequence.unit(), y = sequence.unit();
       const auto [sin, cos] = sin_cos(x);
@@ -141,7 +141,6 @@ TEST_CASE("Sine and angle are odd, cosine is even, to the last bit") {
       REQUIRE(same(angle_of(-y, x), -angle_of(y, x)));
       REQUIRE(same(angle_of(-y, -x), -angle_of(y, -x)));
     }
-  }
 }
 
 TEST_CASE("Exponential and logarithm never fall by more than an ulp from a number to the next") {

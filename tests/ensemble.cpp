@@ -11,8 +11,7 @@
 using namespace impact_damper;
 
 TEST_CASE("an ensemble begins with the scene itself and shifts the release of the others by whole steps") {
-  Scene scene;
-  scene.until_time = 1;
+  const Scene scene{.until_time = 1};
   const std::vector<Scene> members =
       ensemble_of(scene, {.members = 50, .step = 1e-9, .most_steps = 1000, .seed = 7});
   REQUIRE(members.size() == 50);
@@ -41,9 +40,7 @@ TEST_CASE("equal options give equal ensembles, another seed another one, fewer m
 }
 
 TEST_CASE("whatever sets a scene moving is shifted, and nothing else") {
-  Scene resting;
-  resting.x0 = 0;
-  resting.until_time = 60;
+  const Scene resting{.x0 = 0, .until_time = 60};
   struct Release {
     SceneNumber by;
     double size;
@@ -73,8 +70,7 @@ TEST_CASE("whatever sets a scene moving is shifted, and nothing else") {
 
 TEST_CASE(
     "a place between the walls sets nothing moving, so that rigid walls never have a mass inside them") {
-  Scene scene;
-  scene.x0 = 0;
+  Scene scene{.x0 = 0};
   for (const double y0 : {0.0, 0.5, 1.0}) {
     scene.damper().y0 = y0;
     for (const Scene& member : ensemble_of(scene)) CHECK(member == scene);
@@ -82,10 +78,7 @@ TEST_CASE(
 }
 
 TEST_CASE("no member has a number that a scene does not allow") {
-  Scene scene;
-  scene.x0 = 1e12;
-  scene.damper().w0 = -1e12;
-  scene.until_time = 1;
+  const Scene scene{.x0 = 1e12, .until_time = 1, .dampers = {{.w0 = -1e12}}};
   for (const Scene& member : ensemble_of(scene)) CHECK(problems_of(member).empty());
   CHECK(ensemble_of(scene)[1] != scene);
 }
@@ -135,8 +128,7 @@ TEST_CASE("scenes are run in their order, and the first that is not valid is the
 }
 
 TEST_CASE("an unchaotic decay does not spread, a chaotic one does") {
-  Scene scene;
-  scene.until_amplitude = 3.6;
+  Scene scene{.until_amplitude = 3.6};
   const auto spread_at_end = [](const Scene& s) {
     std::vector<double> last;
     for (const Run& run : simulate_ensemble(s, Exact{}, Record{}, {.members = 4}))

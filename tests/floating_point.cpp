@@ -14,24 +14,16 @@
 
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/simulate.hpp"
+#include "rejection.hpp"
 
 using namespace impact_damper;
 
 namespace {
 
-Run short_run(const Engine& engine) {
-  Scene scene;
-  scene.until_time = 20;
-  return simulate(scene, engine, {});
-}
+Run short_run(const Engine& engine) { return simulate({.until_time = 20}, engine, {}); }
 
 std::string rejection(const Engine& engine) {
-  try {
-    short_run(engine);
-  } catch (const NumericalError& error) {
-    return error.what();
-  }
-  return "not rejected";
+  return rejection_of<NumericalError>([&] { short_run(engine); });
 }
 
 const Engine engines[] = {Exact{}, Restitution{}, Cem{}};
@@ -43,15 +35,14 @@ TEST_CASE("every engine runs with the arithmetic that a process starts with") {
 }
 
 TEST_CASE("no engine runs with another rounding mode, and each does again once it is back") {
-  for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
+  for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO})
     for (const Engine& engine : engines) {
       std::fesetround(mode);
       const std::string text = rejection(engine);
       std::fesetround(FE_TONEAREST);
-      CHECK(text.find("the rounding mode is not to nearest") != std::string::npos);
-      CHECK(rejection(engine) == "not rejected");
+      CHECK(contains(text, "the rounding mode is not to nearest"));
+      CHECK(rejection(engine) == not_rejected);
     }
-  }
 }
 
 #ifdef __SSE2__
@@ -62,7 +53,7 @@ TEST_CASE("no engine runs where results or operands that are denormal count as z
       _mm_setcsr(before | bits);
       const std::string text = rejection(engine);
       _mm_setcsr(before);
-      CHECK(text.find("denormal numbers are flushed to zero") != std::string::npos);
+      CHECK(contains(text, "denormal numbers are flushed to zero"));
     }
   }
 }

@@ -19,12 +19,11 @@ namespace {
 
 // A mast: 40 kg on 16 kN/m, 1.6 kg in a box with a clearance of 10 mm.
 Scene mast(double force, double frequency) {
-  Scene scene;
-  scene.damper().mass_ratio = 0.04;
-  scene.damping_ratio = 0.002;
-  scene.x0 = 0;
-  scene.force_amplitude = force;
-  scene.force_frequency = frequency;
+  Scene scene{.damping_ratio = 0.002,
+              .x0 = 0,
+              .force_amplitude = force,
+              .force_frequency = frequency,
+              .dampers = {{.mass_ratio = 0.04}}};
   return scene;
 }
 
@@ -112,7 +111,7 @@ TEST_CASE(
 
   // Of each motion, by a long run of the engine from the state that it ends in.
   int periodic = 0;
-  for (const ResponsePoint& point : response.points) {
+  for (const ResponsePoint& point : response.points)
     for (const ArrivedMotion* motion : {&point.rising, &point.falling}) {
       REQUIRE(motion->is_known());
       const double amplitude = largest_amplitude(simulate(going_on(scene, point, *motion, 200), Exact{}, {}));
@@ -125,7 +124,6 @@ TEST_CASE(
       }
       CHECK(amplitude <= 1.01 * largest->motion.amplitude());
     }
-  }
   CHECK(periodic > 20);
 
   // At the scene's own frequency, by a plain integration.
@@ -169,7 +167,7 @@ TEST_CASE("where the two ways differ each motion keeps its own amplitude in a fu
   const ForcedResponse response = response_of(scene);
   const std::vector<PointRange> ranges = response.two_motions();
   REQUIRE(!ranges.empty());
-  for (const PointRange& range : ranges) {
+  for (const PointRange& range : ranges)
     for (std::size_t i = range.first; i <= range.last; ++i) {
       const ResponsePoint& point = response.points[i];
       for (const auto& [own, other] :
@@ -179,7 +177,6 @@ TEST_CASE("where the two ways differ each motion keeps its own amplitude in a fu
         CHECK(own->earlier_amplitude.has_value() != own->is_periodic());
       }
     }
-  }
 }
 
 TEST_CASE("two motions differ by more than a twentieth and by more than three times their scatter") {
@@ -231,8 +228,7 @@ TEST_CASE("points with two motions next to each other are one range") {
 
 TEST_CASE(
     "without viscous damping a force that impacts cannot hold leads to no steady motion, and that is seen") {
-  Scene scene;
-  scene.x0 = 0;
+  Scene scene{.x0 = 0};
   scene.force_amplitude = 2.5 * scene.damper().mass_ratio;
   const ForcedResponse response = response_of(scene);
   const auto largest = response.largest();
@@ -248,8 +244,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a motion that a budget of the engine ends is not known, and none of them is the largest") {
-  Exact engine;
-  engine.budget.max_impacts = 1;
+  const Exact engine{.budget = {.max_impacts = 1}};
   Scene scene = mast(0.0625, 1);
   const ForcedResponse response = response_of(scene, engine);
   CHECK_FALSE(response.points[response.given].rising.is_known());

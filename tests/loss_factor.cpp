@@ -25,7 +25,7 @@ Peaks viscous(double zeta, int count) {
 }  // namespace
 
 TEST_CASE("a viscous oscillator has the loss factor 2 zeta, with the bias of the parabola as predicted") {
-  for (double zeta : {1e-4, 1e-3, 0.002, 0.004, 0.008}) {
+  for (double zeta : {1e-4, 1e-3, 0.002, 0.004, 0.008})
     for (int half_cycles : {10, 12, 14, 16, 18}) {
       const Peaks peaks = viscous(zeta, 40);
       const LossFactor loss = averaged_loss_factor(peaks.time, peaks.amplitude, {half_cycles});
@@ -35,7 +35,6 @@ TEST_CASE("a viscous oscillator has the loss factor 2 zeta, with the bias of the
       // What is left is of fourth order in the decay over half the window, n p.
       for (double eta : loss.eta) CHECK(std::abs(eta / (2 * zeta) - 1 - bias) < std::pow(n * p, 4) + 1e-10);
     }
-  }
 }
 
 TEST_CASE("a parabola of unequally spaced peaks is met exactly, value and slope") {
@@ -98,10 +97,7 @@ TEST_CASE("what is not valid is rejected") {
 }
 
 TEST_CASE("the ordinates of the figures are made of eta as their names say") {
-  Scene scene;
-  scene.damper().mass_ratio = 0.02;
-  scene.damper().restitution = 0.6;
-  scene.damping_ratio = 0.004;
+  const Scene scene{.damping_ratio = 0.004, .dampers = {{.mass_ratio = 0.02, .restitution = 0.6}}};
   const LossFactor loss{{0.5}, {0}, {0.018}};
   CHECK(ordinate(loss, scene, LossOrdinate::eta)[0] == 0.018);
   CHECK(ordinate(loss, scene, LossOrdinate::specific)[0] == doctest::Approx(0.9));

@@ -20,6 +20,7 @@
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/simulate.hpp"
+#include "rejection.hpp"
 
 using namespace impact_damper;
 
@@ -100,7 +101,7 @@ TEST_CASE("measures of closed forms are those of theory") {
 }
 
 TEST_CASE("a wall delivers the closed form's restitution, to a moving primary mass too") {
-  for (double e : {0.3, 0.6, 0.9}) {
+  for (double e : {0.3, 0.6, 0.9})
     for (double nu : {1e-9, 0.02, 0.5}) {
       // zeta_m is of a fixed wall. The primary mass's own spring takes part to the order of 1/k.
       const double z = zeta_m_closed_form(e) * std::sqrt(1 + nu);
@@ -108,7 +109,6 @@ TEST_CASE("a wall delivers the closed form's restitution, to a moving primary ma
       CHECK(value("wall_restitution", {{"mass_ratio", nu}, {"restitution", e}}) ==
             doctest::Approx(delivered).epsilon(2 * nu * 1e-4 + 1e-8));
     }
-  }
 }
 
 TEST_CASE("the iterative damping ratio errs by what the closed form says of it") {
@@ -160,16 +160,11 @@ TEST_CASE("a mass that sticks moves by what the wall gives way under it") {
   // Stuck, nu x'' is the wall's force k q, and x'' = (f - x)/(1 + nu): the way of q during each lasting
   // contact beside that of a free mass, x - x(0) - v(0) t. The wall's damper adds 2/omega_m, omega_m = 2000,
   // in proportion.
-  Scene scene;
-  scene.damper().mass_ratio = 0.25;
-  scene.damper().restitution = 0;
-  scene.damper().wall_stiffness = 1e6;
-  scene.force_amplitude = 2;
-  scene.force_frequency = 0.4;
-  scene.until_time = 20;
-  Record record;
-  record.contacts = true;
-  record.history = {{0, 20, 20001}};
+  const Scene scene{.force_amplitude = 2,
+                    .force_frequency = 0.4,
+                    .until_time = 20,
+                    .dampers = {{.mass_ratio = 0.25, .restitution = 0, .wall_stiffness = 1e6}}};
+  const Record record{.contacts = true, .history = {{0, 20, 20001}}};
   const Run run = simulate(scene, Exact{}, record);
   const History& h = *run.history;
   double gives = 0, flies = 0;
@@ -202,8 +197,7 @@ struct ShortEnsemble {
   Run first;
 
   ShortEnsemble() {
-    Scene scene;
-    scene.until_amplitude = 5.5;
+    const Scene scene{.until_amplitude = 5.5};
     record.contacts = true;
     first = simulate(scene, Exact{}, record);
     const std::vector<Scene> scenes = ensemble_of(scene, {.members = 3});
@@ -224,12 +218,7 @@ struct ShortEnsemble {
   // What reading the ensemble throws.
   template <class Error>
   std::string complaint(const EnsembleOptions& options = {.members = 3}) const {
-    try {
-      Runs(folder, options).ensemble("short");
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "nothing";
+    return rejection_of<Error>([&] { Runs(folder, options).ensemble("short"); });
   }
 };
 
@@ -326,41 +315,31 @@ TEST_CASE("a further run that is missing, or of another scene or engine than the
   write_file(folders.scenes / "short.json", scene_text(files.first.scene));
   CatalogueRun wanted{"short.later", "short", {{"x0", 6.5}}, Restitution{}, Record{}};
   const std::filesystem::path file = folders.file_of(wanted.name);
-  const auto complaint = [&] {
-    try {
-      folders.read(wanted);
-    } catch (const std::exception& error) {
-      return std::string(error.what());
-    }
-    return std::string("nothing");
-  };
-  CHECK(complaint().find("made by: impact-damper run --scene " + (folders.scenes / "short.json").string() +
-                         " -o " + file.string()) != std::string::npos);
+  const auto complaint = [&] { return rejection_of([&] { folders.read(wanted); }); };
+  CHECK(contains(complaint(), "made by: impact-damper run --scene " +
+                                  (folders.scenes / "short.json").string() + " -o " + file.string()));
   const auto becomes = [&](const Scene& scene, const Engine& engine) {
     files.write(file, simulate(scene, engine, Record{}));
     return complaint();
   };
   Scene changed = files.first.scene;
-  CHECK(becomes(changed, Restitution{})
-            .find("/scene/x0: must be 6.5 as in run short.later of the catalogue, got 6") !=
-        std::string::npos);
+  CHECK(contains(becomes(changed, Restitution{}),
+                 "/scene/x0: must be 6.5 as in run short.later of the catalogue, got 6"));
   changed.x0 = 6.5;
-  CHECK(becomes(changed, Restitution{}) == "nothing");
-  CHECK(
-      becomes(changed, Restitution{.accumulation_tolerance = 1e-6})
-          .find("/engine: must be that of run short.later of the catalogue, restitution, with its options") !=
-      std::string::npos);
+  CHECK(becomes(changed, Restitution{}) == not_rejected);
+  CHECK(contains(becomes(changed, Restitution{.accumulation_tolerance = 1e-6}),
+                 "/engine: must be that of run short.later of the catalogue, restitution, with its options"));
   wanted.engine.reset();
-  CHECK(complaint().find("/engine: must be that of " + folders.file_of("short").string() +
-                         ", exact, with its options, got restitution") != std::string::npos);
-  CHECK(becomes(changed, Exact{}) == "nothing");
+  CHECK(contains(complaint(), "/engine: must be that of " + folders.file_of("short").string() +
+                                  ", exact, with its options, got restitution"));
+  CHECK(becomes(changed, Exact{}) == not_rejected);
 }
 
 TEST_CASE("a member that is missing, of another release or engine, or contradicts itself is rejected") {
   const ShortEnsemble files;
   const std::filesystem::path third = member_file(files.run_file(), 3);
   const Run member = read_run(third);
-  CHECK(files.complaint<std::exception>() == "nothing");
+  CHECK(files.complaint<std::exception>() == not_rejected);
   CHECK(files.complaint<IoError>({.members = 4}) ==
         member_file(files.run_file(), 4).string() +
             ": cannot be read: No such file or directory; made by: impact-damper run --members 4 -o " +
@@ -368,9 +347,9 @@ TEST_CASE("a member that is missing, of another release or engine, or contradict
 
   files.write(third, read_run(member_file(files.run_file(), 2)));
   CHECK(files.complaint<InputError>().starts_with(third.string() + ": /scene/x0: must be "));
-  CHECK(files.complaint<InputError>().find(" as in member 3 of the ensemble of " +
-                                           files.run_file().string()) != std::string::npos);
-  CHECK(files.complaint<std::exception>({.members = 2}) == "nothing");
+  CHECK(contains(files.complaint<InputError>(),
+                 " as in member 3 of the ensemble of " + files.run_file().string()));
+  CHECK(files.complaint<std::exception>({.members = 2}) == not_rejected);
 
   files.write(third, simulate(member.scene, Exact{.calibration = Calibration::two_body}, files.record));
   CHECK(files.complaint<InputError>().starts_with(third.string() + ": /engine: must be that of "));
@@ -382,15 +361,16 @@ TEST_CASE("a member that is missing, of another release or engine, or contradict
                                                   ": /half_cycles/amplitude/0: contradicts the rest"));
 
   files.write(third, member);
-  CHECK(files.complaint<std::exception>() == "nothing");
+  CHECK(files.complaint<std::exception>() == not_rejected);
 }
 
 TEST_CASE("members record all that is asked for but the history and the energy balance") {
-  Record record;
-  record.half_cycles = false;
-  record.impacts = record.contacts = record.energy = true;
-  record.history = {{0, 1, 2}};
-  record.history_below = {{1, 1, 2}};
+  const Record record{.half_cycles = false,
+                      .impacts = true,
+                      .contacts = true,
+                      .energy = true,
+                      .history = {{0, 1, 2}},
+                      .history_below = {{1, 1, 2}}};
   const Record kept = record_of_member(record);
   CHECK(kept.impacts);
   CHECK(kept.contacts);

@@ -1,5 +1,6 @@
 // The measures that read run files, on runs made by hand: a decay in half cycles of length pi with whatever
-// amplitudes, impacts and contacts a test wants, so that each number can be worked out on paper.
+// amplitudes, impacts and contacts a test wants; and those that read responses, on such a decay and responses
+// made by hand; so that each number can be worked out on paper.
 #include <doctest/doctest.h>
 #include <unistd.h>
 
@@ -8,6 +9,9 @@
 #include <functional>
 #include <numbers>
 #include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "application/reproduction/measures.hpp"
 #include "application/reproduction/measures_parts.hpp"
@@ -25,10 +29,8 @@ constexpr double pi = std::numbers::pi;
 
 // n half cycles, row i with amplitude(i), its peak at i pi and a zero crossing half of pi later.
 Run decay(int n, const std::function<double(int)>& amplitude) {
-  Scene scene;
-  scene.until_time = 0.1;
-  Record record;
-  record.impacts = record.contacts = true;
+  const Scene scene{.until_time = 0.1};
+  const Record record{.impacts = true, .contacts = true};
   Run run = simulate(scene, Exact{}, record);
   run.scene.until_time = run.end_time = n * pi;
   HalfCycles& rows = run.half_cycles.emplace();
@@ -62,6 +64,12 @@ void add_stuck(Run& run, std::size_t row, double from, double to) {
   run.contacts->wall.push_back(Wall::left);
 }
 
+// Of one release there is no spread.
+double median_of(const Spread& spread) {
+  CHECK((spread.low == spread.median || std::isnan(spread.median)));
+  CHECK((spread.high == spread.median || std::isnan(spread.median)));
+  return spread.median;
+}
 Spread spread_measured(const std::string& name, std::map<std::string, double> numbers,
                        const std::vector<Run>& scenes) {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() /
@@ -79,11 +87,7 @@ Spread spread_measured(const std::string& name, std::map<std::string, double> nu
 }
 double measured(const std::string& name, std::map<std::string, double> numbers,
                 const std::vector<Run>& scenes) {
-  const Spread spread = spread_measured(name, std::move(numbers), scenes);
-  // Of one release there is no spread.
-  CHECK((spread.low == spread.median || std::isnan(spread.median)));
-  CHECK((spread.high == spread.median || std::isnan(spread.median)));
-  return spread.median;
+  return median_of(spread_measured(name, std::move(numbers), scenes));
 }
 
 }  // namespace
@@ -249,13 +253,8 @@ TEST_CASE("a wall gives way as a damped spring struck at the fastest impact does
   // Either wall, met first and once. Struck at speed w the wall of two free masses gives way at most by
   // (w / omega) exp(-z arccos(z) / sqrt(1 - z^2)), omega^2 = (1 + nu) k / nu, z = zeta_m sqrt(1 + nu).
   for (const double w0 : {-2.0, 3.0}) {
-    Scene scene;
-    scene.x0 = 0;
-    scene.damper().y0 = 0.5;
-    scene.damper().w0 = w0;
-    scene.until_time = 0.4;
-    Record record;
-    record.impacts = true;
+    const Scene scene{.x0 = 0, .until_time = 0.4, .dampers = {{.y0 = 0.5, .w0 = w0}}};
+    const Record record{.impacts = true};
     const Run run = simulate(scene, Exact{}, record);
     const double nu = scene.damper().mass_ratio, decrement = -std::log(scene.damper().restitution);
     const double z = decrement / std::hypot(pi, decrement) * std::sqrt(1 + nu);
@@ -268,18 +267,15 @@ TEST_CASE("a wall gives way as a damped spring struck at the fastest impact does
 }
 
 TEST_CASE("rigid walls give way by nothing, and a run mixes as much as itself") {
-  Scene scene;
-  scene.until_amplitude = 3;
-  Record record;
-  record.impacts = true;
+  const Scene scene{.until_amplitude = 3};
+  const Record record{.impacts = true};
   const Run run = simulate(scene, Restitution{}, record);
   CHECK(measured("wall_overlap", {}, {run}) < 1e-12);
   CHECK(measured("mixed_share_ratio", {{"from", 3}, {"to", 5}}, {run, run}) == 1);
 }
 
 TEST_CASE("the share of mixed half cycles is that outside the windows, divided by the second run's") {
-  Scene scene;
-  scene.until_amplitude = 3;
+  const Scene scene{.until_amplitude = 3};
   const Run second = simulate(scene, Restitution{}, Record{});
   Run run = second;
   const auto share = [](const Run& of) {
@@ -389,10 +385,7 @@ TEST_CASE("a first missed impact is put in proportion to another scene's") {
 }
 
 TEST_CASE("the order of a step is the slope of its amplitudes' errors, summed") {
-  Scene scene;
-  scene.damper().mass_ratio = 0.1;
-  scene.damper().wall_stiffness = 100;
-  scene.until_time = 30;
+  const Scene scene{.until_time = 30, .dampers = {{.mass_ratio = 0.1, .wall_stiffness = 100}}};
   const Run exact = simulate(scene, Exact{}, Record{});
   const auto error = [&](double step, bool locate) {
     const Run run = simulate(scene, Cem{.time_step = step, .locate = locate}, Record{});
@@ -416,9 +409,7 @@ TEST_CASE("the order of a step is the slope of its amplitudes' errors, summed") 
 }
 
 TEST_CASE("the impacts of half cycles that end stuck become more as a power of 1/(1 - e)") {
-  Scene scene;
-  scene.damper().mass_ratio = 0.02;
-  scene.until_time = 1;
+  Scene scene{.until_time = 1, .dampers = {{.mass_ratio = 0.02}}};
   const double grows = measured("stuck_impacts_growth", {}, {simulate(scene, Exact{}, {true, true, true})});
   double sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (const double e : {0.4, 0.6, 0.8, 0.9}) {
@@ -439,16 +430,13 @@ TEST_CASE("the impacts of half cycles that end stuck become more as a power of 1
 }
 
 TEST_CASE("the paper's stuck regime saves the steps that a run to the same amplitude can do without") {
-  Scene scene;
-  scene.damper().mass_ratio = 0.05;
-  scene.until_amplitude = 1;
+  const Scene scene{.until_amplitude = 1, .dampers = {{.mass_ratio = 0.05}}};
   const Run file = simulate(scene, Exact{}, {true, true, true});
   const double speed = 0.4;
   const auto ends = [&](std::optional<double> stuck_speed, std::int64_t steps) {
     Scene its = scene;
     its.until_amplitude = 5;
-    Cem engine{.locate = true, .large_step = 0.02, .stuck_speed = stuck_speed};
-    engine.max_steps = steps;
+    const Cem engine{.locate = true, .large_step = 0.02, .stuck_speed = stuck_speed, .max_steps = steps};
     return simulate(its, engine, Record{}).stop_reason;
   };
   // The share of steps is right if with as many the run comes to its end, and with fewer it does not.
@@ -478,8 +466,7 @@ TEST_CASE("measures of several dampers are what they are for decays of known los
   CHECK(measured("alike_range", {{"from", 0.1}, {"to", 5}, {"within", 0.7}}, {run}) == doctest::Approx(50));
 
   // 0.03 together; alone eta = 0.01 with nu = 0.02, so that dampers of 0.02 and 0.02 should lose 0.02.
-  Scene scene;
-  scene.until_time = 0.1;
+  Scene scene{.until_time = 0.1};
   scene.dampers = {{.mass_ratio = 0.02, .clearance = 1}, {.mass_ratio = 0.02, .clearance = 3}};
   Run set = simulate(scene, Restitution{}, Record{});
   set.half_cycles = decay(300, [](int i) { return 6 * std::exp(-0.03 * i * pi / 2); }).half_cycles;
@@ -496,4 +483,270 @@ TEST_CASE("measures of several dampers are what they are for decays of known los
   // One damper's measure is not taken of a list, nor this of one damper.
   CHECK_THROWS_AS(measured("largest_loss", {}, {set}), std::invalid_argument);
   CHECK_THROWS_AS(measured("from_sum", all, {alone, alone}), std::invalid_argument);
+}
+
+// --- Measures that read responses --------------------------------------------------------------------------
+
+namespace {
+
+// A = a0 - a1 t + a2 t^2 at the peaks t = i pi, to which a parabola is fitted exactly. A eta = -2 A' falls
+// with the amplitude: A'^2 = a1^2 - 4 a2 (a0 - A).
+constexpr double a0 = 4, a1 = 0.009, a2 = 4e-6;
+constexpr int rows = 160;
+constexpr double nu = 0.2;
+double amplitude_at(double i) { return a0 - a1 * i * pi + a2 * i * i * pi * pi; }
+double needed_at(double i) { return std::sqrt(1 + nu) * 2 * (a1 - 2 * a2 * i * pi); }
+double predicted(double force) {
+  const double slope = force / (2 * std::sqrt(1 + nu));
+  return a0 - (a1 * a1 - slope * slope) / (4 * a2);
+}
+Run parabola_decay(int n = rows, const std::function<double(int)>& amplitude = amplitude_at) {
+  Run run = decay(n, amplitude);
+  run.scene.damper().mass_ratio = nu;
+  return run;
+}
+// Points of the loss curve are at i = 6 to rows - 6, row 5 being left out.
+constexpr int first_point = 6, last_point = rows - 6;
+
+SteadyState steady(double amplitude, double scatter = 0) {
+  SteadyState state;
+  state.means = SteadyMeans{.amplitude = amplitude};
+  state.amplitude_scatter = scatter;
+  return state;
+}
+std::vector<SteadyState> with_amplitudes(const std::vector<double>& amplitudes) {
+  std::vector<SteadyState> states;
+  for (const double amplitude : amplitudes) states.push_back(steady(amplitude));
+  return states;
+}
+SweepResponse over_force(double from, double to, const std::vector<double>& up,
+                         const std::vector<double>& down) {
+  SweepResponse response;
+  response.axis = {&Scene::force_amplitude, from, to, static_cast<std::int64_t>(up.size())};
+  response.sweeps.push_back({.up = with_amplitudes(up), .down = with_amplitudes(down)});
+  return response;
+}
+
+Spread spread(const std::string& name, const std::map<std::string, double>& numbers,
+              const std::vector<Response>& responses, bool of_decay = true) {
+  Runs runs(std::nullopt, {.members = 1});
+  runs.put("decay", parabola_decay());
+  MeasureCall call;
+  call.name = name;
+  if (of_decay) call.scenes = {"decay"};
+  call.numbers = numbers;
+  for (const Response& response : responses) {
+    call.responses.push_back("response" + std::to_string(call.responses.size()));
+    runs.put(call.responses.back(), response);
+  }
+  return measure(runs, call);
+}
+double measured(const std::string& name, const std::map<std::string, double>& numbers,
+                const std::vector<Response>& responses, bool of_decay = true) {
+  return median_of(spread(name, numbers, responses, of_decay));
+}
+double share(const std::string& name, const std::vector<Response>& responses) {
+  return measured(name, {}, responses, false);
+}
+
+const std::map<std::string, double> everything{{"from", 0.1}, {"to", 10}};
+
+// Linear between points whose second difference is 2 a2 pi^2: the amplitude is good to a quarter of that.
+constexpr double between_points = a2 * pi * pi / 2;
+
+}  // namespace
+
+TEST_CASE("the largest steady amplitude is held against the one that the decay predicts") {
+  // The middle three forces have a prediction; one is below all that the decay needs, one above.
+  const double least = needed_at(last_point), most = needed_at(first_point);
+  const double from = least - 0.002, to = most + 0.002, step = (to - from) / 4;
+  const double f1 = from + step, f2 = from + 2 * step, f3 = from + 3 * step;
+  REQUIRE(f1 > least);
+  REQUIRE(f3 < most);
+  const double p1 = predicted(f1), p2 = predicted(f2), p3 = predicted(f3);
+  // The largest of both responses counts, whichever it is in.
+  const SweepResponse one = over_force(from, to, {9, 0.8 * p1, 1.04 * p2, 0.1, 9},
+                                       {9, 1.1 * p1, 0.2, 0.98 * p3, 9}),
+                      other = over_force(from, to, {9, 0.7 * p1, 0.3, 0.9 * p3, 9},
+                                         {9, 0.9 * p1, 1.06 * p2, 0.2, 9});
+  const auto of = [&](const std::string& name) { return measured(name, everything, {one, other}); };
+  const double error = 100 * between_points / p1;
+  CHECK(std::abs(of("steady_amplitude_falling_percent") - (10 + 6 + 2) / 3.0) < error);
+  CHECK(std::abs(of("steady_amplitude_falling_worst_percent") - 10) < error);
+  CHECK(std::abs(of("steady_amplitude_rising_percent") - (20 + 4 + 10) / 3.0) < error);
+  CHECK(std::abs(of("steady_amplitude_rising_worst_percent") - 20) < error);
+
+  // Only predicted amplitudes within the range count.
+  const double above_p1 = (p1 + p2) / 2, below_p3 = (p2 + p3) / 2;
+  CHECK(
+      std::abs(measured("steady_amplitude_falling_percent", {{"from", above_p1}, {"to", 10}}, {one, other}) -
+               (6 + 2) / 2.0) < error);
+  CHECK(
+      std::abs(measured("steady_amplitude_rising_percent", {{"from", 0.1}, {"to", below_p3}}, {one, other}) -
+               (20 + 4) / 2.0) < error);
+}
+
+TEST_CASE(
+    "where the force that is needed has no single amplitude, the one nearest below its largest counts") {
+  // A decay that loses twice as much at its end as before needs the same forces there once more.
+  Runs runs(std::nullopt, {.members = 1});
+  const double slope = a1 - 2 * a2 * rows * pi;
+  runs.put("decay", parabola_decay(rows + 60, [=](int i) {
+             return i < rows ? amplitude_at(i) : amplitude_at(rows) - 1.5 * slope * (i - rows) * pi;
+           }));
+  const double force = 1.2 * needed_at(last_point), p = predicted(force);
+  REQUIRE(p > amplitude_at(rows));
+  runs.put("response", Response(over_force(force, 2 * force, {p, 1}, {1.05 * p, 1})));
+  REQUIRE(2 * force > needed_at(first_point));
+  const MeasureCall call{"steady_amplitude_falling_worst_percent", {"decay"}, everything, {"response"}};
+  CHECK(std::abs(measure(runs, call).median - 5) < 100 * between_points / p);
+}
+
+TEST_CASE("the force beyond the largest that the decay needs is found between two forces of a rising sweep") {
+  const double top = amplitude_at(first_point), needed = needed_at(first_point);
+  // 0.02 and 0.03: a third of the way from below to above.
+  const SweepResponse rises = over_force(0.01, 0.04, {0.5, top - 0.1, top + 0.2, 9}, {9, 9, 9, 9});
+  CHECK(measured("force_limit_ratio", everything, {rises}) == doctest::Approx((0.02 + 0.01 / 3) / needed));
+  // The range moves the top: to row 50.
+  const double middle = amplitude_at(50);
+  const SweepResponse lower = over_force(0.01, 0.04, {0.5, middle - 0.1, middle + 0.1, 9}, {9, 9, 9, 9});
+  CHECK(measured("force_limit_ratio", {{"from", 0.1}, {"to", middle + 1e-9}}, {lower}) ==
+        doctest::Approx(0.025 / needed_at(50)));
+  // Never exceeded, or already at the first force.
+  CHECK(std::isnan(measured("force_limit_ratio", everything, {over_force(0.01, 0.02, {1, 2}, {9, 9})})));
+  CHECK(std::isnan(measured("force_limit_ratio", everything, {over_force(0.01, 0.02, {8, 9}, {1, 1})})));
+}
+
+TEST_CASE("the jump is between the forces of a falling sweep where the amplitude falls below 0.5") {
+  const double from = 0.5 * (amplitude_at(99) + amplitude_at(100)), least = needed_at(99);
+  const std::map<std::string, double> range{{"from", from}, {"to", 10}};
+  // Held at 0.04 and 0.05; not at 0.03; what is at 0.02 lies below the jump.
+  const SweepResponse falls = over_force(0.01, 0.05, {0, 0, 0, 0, 0}, {0, 1, 0.45, 0.5, 3});
+  CHECK(measured("force_jump_ratio", range, {falls}) == doctest::Approx(0.035 / least));
+  CHECK(std::isnan(measured("force_jump_ratio", range, {over_force(0.01, 0.02, {0, 0}, {3, 3})})));
+  CHECK(std::isnan(measured("force_jump_ratio", range, {over_force(0.01, 0.02, {3, 3}, {3, 0.1})})));
+}
+
+TEST_CASE(
+    "a state that was not reached has no amplitude, and responses of other kinds or forces are rejected") {
+  const double force = needed_at(80), p = predicted(force);
+  SweepResponse sweep = over_force(force, 2 * force, {p, p}, {p, p});
+  CHECK(measured("steady_amplitude_falling_percent", everything, {sweep}) < 1);
+  SweepResponse ended = sweep;
+  ended.sweeps[0].down[0].means.reset();
+  CHECK(std::isnan(measured("steady_amplitude_falling_percent", everything, {ended, sweep})));
+  CHECK(std::isnan(measured("steady_amplitude_falling_percent", everything, {sweep, ended})));
+  CHECK(std::isnan(share("one_motion_share", {ended})));
+  SweepResponse frequencies = sweep;
+  frequencies.axis.number = &Scene::force_frequency;
+  CHECK_THROWS_AS(measured("force_limit_ratio", everything, {frequencies}), std::invalid_argument);
+  CHECK_THROWS_AS(
+      measured("force_limit_ratio", everything, {sweep, over_force(force, 3 * force, {p, p}, {p, p})}),
+      std::invalid_argument);
+  CHECK_THROWS_AS(share("one_motion_share", {BasinResponse{}}), std::invalid_argument);
+  CHECK_THROWS_AS(share("two_impact_share", {sweep}), std::invalid_argument);
+}
+
+TEST_CASE("sweeps from other starts are an ensemble, whose median counts") {
+  const double force = needed_at(80), p = predicted(force), error = 100 * between_points / p;
+  REQUIRE(2 * force > needed_at(first_point));  // without a prediction
+  const auto sweeps = [&](const std::vector<double>& amplitudes) {
+    SweepResponse all = over_force(force, 2 * force, {p, 9}, {p, 9});
+    all.sweeps.clear();
+    for (const double amplitude : amplitudes)
+      all.sweeps.push_back(
+          {.up = with_amplitudes({amplitude * p, 9}), .down = with_amplitudes({(amplitude + 0.1) * p, 9})});
+    return all;
+  };
+  // Of both responses the larger counts, start by start: 1.3, 1.1, 1.2; force falling 1.4, 1.2, 1.3.
+  const SweepResponse one = sweeps({1.3, 0.5, 1.2}), other = sweeps({0.4, 1.1, 0.3});
+  const auto is = [&](const std::string& name, double low, double median, double high) {
+    const Spread found = spread(name, everything, {one, other});
+    CHECK(std::abs(found.low - low) < error);
+    CHECK(std::abs(found.median - median) < error);
+    CHECK(std::abs(found.high - high) < error);
+  };
+  is("steady_amplitude_rising_percent", 10, 20, 30);
+  is("steady_amplitude_falling_worst_percent", 20, 30, 40);
+  CHECK_THROWS_AS(spread("steady_amplitude_rising_percent", everything, {one, sweeps({1, 1})}),
+                  std::invalid_argument);
+
+  const SweepResponse same = over_force(1, 2, {1, 1}, {1, 1});
+  SweepResponse both = same;
+  both.sweeps.push_back({.up = with_amplitudes({1, 1}), .down = with_amplitudes({1, 2})});
+  const Spread share_of_both = spread("one_motion_share", {}, {both, both}, false);
+  CHECK(share_of_both.low == doctest::Approx(0.5));
+  CHECK(share_of_both.median == doctest::Approx(0.75));
+  CHECK(share_of_both.high == doctest::Approx(1));
+  CHECK_THROWS_AS(spread("one_motion_share", {}, {both, same}, false), std::invalid_argument);
+}
+
+TEST_CASE("two ways arrive at one motion if they differ by 5 percent or three standard deviations at most") {
+  SweepResponse sweep = over_force(1, 5, {1, 1, 1, 1, 1}, {1.04, 1.06, 0.94, 1.2, 1.2});
+  CHECK(share("one_motion_share", {sweep}) == doctest::Approx(1 / 5.0));
+  // 3 sqrt(0.03^2 + 0.06^2) = 0.2012
+  sweep.sweeps[0].up[3].amplitude_scatter = sweep.sweeps[0].up[4].amplitude_scatter = 0.03;
+  sweep.sweeps[0].down[3].amplitude_scatter = 0.06;
+  sweep.sweeps[0].down[4].amplitude_scatter = 0.059;
+  CHECK(share("one_motion_share", {sweep}) == doctest::Approx(2 / 5.0));
+  CHECK(share("one_motion_share", {sweep, over_force(1, 2, {1, 1}, {1, 2})}) == doctest::Approx(3 / 7.0));
+}
+
+TEST_CASE("points of a map with one impact on each wall in a period are counted, equally spaced or not") {
+  BasinResponse map;
+  map.basin.attractors = {{.period = 1, .impacts = {1, 1}, .symmetric = true, .points = 5},
+                          {.period = 1, .impacts = {1, 1}, .symmetric = false, .points = 2},
+                          {.period = 1, .impacts = {2, 2}, .symmetric = true, .points = 1},
+                          {.period = 3, .impacts = {1, 1}, .symmetric = true, .points = 1},
+                          {.period = 1, .impacts = {1, 0}, .symmetric = false, .points = 1},
+                          {.period = 1, .impacts = {1, 1}, .symmetric = true, .points = 3},
+                          {.idle = true, .symmetric = true, .points = 4}};
+  map.basin.attractor.assign(20, undecided);
+  CHECK(share("two_impact_share", {map}) == doctest::Approx(8 / 20.0));
+  CHECK(share("equally_spaced_share", {map}) == doctest::Approx(8 / 10.0));
+}
+
+TEST_CASE("two impacts in a period are held against the power of the closed form") {
+  // Undamped, M13.18.
+  SweepResponse sweep;
+  sweep.scene.damper().mass_ratio = 0.1;
+  sweep.scene.damper().restitution = 0.5;
+  sweep.scene.force_amplitude = 0.08;
+  sweep.axis = {&Scene::force_frequency, 0.9, 1, 3};
+  const auto powers = [](double omega) {
+    const double m = 0.1, e = 0.5, b = (1 - e) / (1 + e), c = 0.08 / (1 - omega * omega);
+    const double a = pi / omega + 2 * m * std::tan(pi / (2 * omega)), q = b * (1 + m) / omega;
+    const double square = a * a + 4 * q * q, root = std::sqrt(a * a - square * (1 - 4 * c * c));
+    std::vector<double> found;
+    for (const double v : {(a + root) / square, (a - root) / square}) {
+      if (v < 0) continue;
+      const double w = v * (1 + b) * (1 + m);
+      found.push_back(omega / (2 * pi) * m / (1 + m) * (1 - e * e) * w * w);
+    }
+    return found;
+  };
+  const auto two_impacts = [](double power) {
+    SteadyState state = steady(1);
+    state.period = 1;
+    state.impacts = {1, 1};
+    state.symmetric = true;
+    state.means->impact_power = power;
+    return state;
+  };
+  SteadyState unequal = two_impacts(7), more = two_impacts(7), longer = two_impacts(7), open = two_impacts(7);
+  unequal.symmetric = false;
+  more.impacts = {2, 2};
+  longer.period = 3;
+  open.period.reset();
+  REQUIRE(powers(0.9).size() == 2);
+  const double at_090 = powers(0.9)[0], at_095 = powers(0.95)[0], slow_at_090 = powers(0.9)[1];
+  // At 1 there is no closed form.
+  sweep.sweeps = {{.up = {two_impacts(1.01 * at_090), two_impacts(0.96 * at_095), two_impacts(7)},
+                   .down = {two_impacts(slow_at_090), unequal, two_impacts(7)}},
+                  {.up = {more, longer, open}, .down = {open, open, open}}};
+  CHECK(share("two_impact_error", {sweep}) == doctest::Approx(0.04));
+  sweep.sweeps[0].down[0] = two_impacts(1.05 * slow_at_090);
+  CHECK(share("two_impact_error", {sweep}) == doctest::Approx(0.05));
+  sweep.sweeps.erase(sweep.sweeps.begin());
+  CHECK(std::isnan(share("two_impact_error", {sweep})));
 }

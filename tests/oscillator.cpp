@@ -61,21 +61,18 @@ TEST_CASE_TEMPLATE("the solutions from rest keep their relative accuracy for sho
     const Oscillator<Real> oscillator(a, b);
     // C - 1 and S - t do not turn back while the slower of the two rates has not acted.
     const double slow = a * a > b ? b / (a + std::sqrt(a * a - b)) : std::sqrt(b);
-    for (double scaled : times) {
+    for (double scaled : times)
       for (double t : {scaled / double(oscillator.rate()), scaled / slow}) {
         if (t * slow > 0.6) continue;
         const Expected expected = solutions(a, b, t);
         const Propagator<Real> p = oscillator.propagate(t);
-        CAPTURE(a);
-        CAPTURE(b);
-        CAPTURE(t);
+        INFO("a ", a, ", b ", b, ", t ", t);
         // A handful of roundings each.
         CHECK(magnitude(p.c - expected.c) <= 4 * epsilon * magnitude(expected.c));
         CHECK(magnitude(p.s - expected.s) <= 8 * epsilon * magnitude(expected.s));
         CHECK(magnitude(p.c1 - expected.c1) <= 16 * epsilon * magnitude(expected.c1));
         CHECK(magnitude(p.s1 - expected.s1) <= 32 * epsilon * magnitude(expected.s1));
       }
-    }
   }
 }
 
@@ -86,14 +83,12 @@ TEST_CASE_TEMPLATE("over long times the solutions are as accurate as the argumen
     const double a = damping.a, b = damping.b;
     const Oscillator<Real> oscillator(a, b);
     const double slow = a * a > b ? b / (a + std::sqrt(a * a - b)) : a > 0 ? a : std::sqrt(b);
-    for (double scaled : {0.5, 1.0, 3.0, 10.0, 30.0, 100.0, 1e4}) {
+    for (double scaled : {0.5, 1.0, 3.0, 10.0, 30.0, 100.0, 1e4})
       for (double t : {scaled / double(oscillator.rate()), scaled / slow}) {
         if (a * t > 1e6 || (a > 0 && slow * t > 40)) continue;
         const Expected expected = solutions(a, b, t);
         const Propagator<Real> p = oscillator.propagate(t);
-        CAPTURE(a);
-        CAPTURE(b);
-        CAPTURE(t);
+        INFO("a ", a, ", b ", b, ", t ", t);
         // The envelope, with the rounding of omega t and of the exponent.
         const double root_b = std::sqrt(b);
         const double of_s = std::hypot(magnitude(expected.s), magnitude(expected.v) / root_b);
@@ -105,7 +100,6 @@ TEST_CASE_TEMPLATE("over long times the solutions are as accurate as the argumen
         CHECK(magnitude(p.c - expected.c) <= roundings * of_c);
         CHECK(magnitude(p.v - expected.v) <= 2 * roundings * of_v);
       }
-    }
   }
 }
 
@@ -123,15 +117,12 @@ TEST_CASE_TEMPLATE("the driven response from rest is right at, near and away fro
       if (omega <= 0) continue;
       const Oscillator<Real> oscillator(a, 1);
       const Forcing<Real> forcing{Real(0.7), Real(omega)};
-      for (double begin : {0.0, 0.8, 41.3}) {
+      for (double begin : {0.0, 0.8, 41.3})
         for (double t : {1e-8, 1e-3, 0.3, 0.6, 2.0, 11.0, 300.0}) {
           const ExpectedResponse expected = driven(a, 1, 0.7, omega, begin, t);
           const DrivenResponse<Real> found =
               oscillator.respond(forcing, forcing.phase(begin), t, oscillator.propagate(t));
-          CAPTURE(a);
-          CAPTURE(omega);
-          CAPTURE(begin);
-          CAPTURE(t);
+          INFO("a ", a, ", omega ", omega, ", begin ", begin, ", t ", t);
           // What the response could at most have grown to in this time, and how far the rounding of the
           // phases omega t and omega begin can shift it.
           const double most1 = 0.7 * std::min({t, 2 / std::max(a, 1e-300), 4 / omega + (omega < 2 ? t : 0)});
@@ -140,7 +131,6 @@ TEST_CASE_TEMPLATE("the driven response from rest is right at, near and away fro
           CHECK(magnitude(found.d - expected.d) <= roundings * most);
           CHECK(magnitude(found.d1 - expected.d1) <= roundings * most1);
         }
-      }
     }
   }
 }
@@ -150,8 +140,8 @@ TEST_CASE_TEMPLATE("the series of a motion under a force is the motion, as long 
   const double epsilon = double(std::numeric_limits<Real>::epsilon());
   reference::Random random(41);
   double most = 0;
-  for (double a : {0.0, 1e-12, 1e-3, 0.01, 0.3, 0.99, 1.0, 1.01, 2.0}) {
-    for (double b : {1.0, 0.98, 1e-4}) {
+  for (double a : {0.0, 1e-12, 1e-3, 0.01, 0.3, 0.99, 1.0, 1.01, 2.0})
+    for (double b : {1.0, 0.98, 1e-4})
       for (double omega : {1e-6, 0.2, 0.5, 0.988, 1.0, 1.4, 5.0, 60.0, 1e6}) {
         const Oscillator<Real> oscillator(a, b);
         const DrivenSeriesTable<Real> table(oscillator, Real(omega));
@@ -168,10 +158,7 @@ TEST_CASE_TEMPLATE("the series of a motion under a force is the motion, as long 
             const auto u = reference::applied<4>(e, {x, v, f, g});
             const Quad u2 = u[2] - 2 * Quad(a) * u[1] - Quad(b) * u[0];
             const SeriesAt<Real> found = series.departure().at(t);
-            CAPTURE(a);
-            CAPTURE(b);
-            CAPTURE(omega);
-            CAPTURE(share);
+            INFO("a ", a, ", b ", b, ", omega ", omega, ", share ", share);
             // The terms of a damped motion alternate, and add up to more than itself.
             const double noise = (a * a < b / 4 ? 12 : 40) * epsilon;
             CHECK(magnitude(Quad(x) + Quad(v) * Quad(t) + Quad(found.u) - u[0]) <= noise);
@@ -181,8 +168,6 @@ TEST_CASE_TEMPLATE("the series of a motion under a force is the motion, as long 
           }
         }
       }
-    }
-  }
   MESSAGE("largest error of x'' ", most, " roundings");
 }
 
@@ -191,9 +176,7 @@ TEST_CASE("the phase of a force after a short time is turned, after a longer one
   for (const double frequency : {0.01, 1.0, 33.0})
     for (const double angle : {0.0, 0.4, 1.5707, 3.2, 12.9, 700.1})
       for (const double by : {0.0, 1e-9, 0.01, 0.03, 0.06, 0.0624}) {
-        CAPTURE(frequency);
-        CAPTURE(angle);
-        CAPTURE(by);
+        INFO("frequency ", frequency, ", angle ", angle, ", by ", by);
         const Forcing<double> force{1, frequency};
         const double begin = angle / frequency, since = by / frequency;
         const SinCos<double> before = force.phase(begin), then = force.phase(-1e9, before, since);

@@ -11,13 +11,12 @@
 using namespace impact_damper;
 
 TEST_CASE("every index is worked on once, with any number of threads and of indices") {
-  for (const std::int64_t count : {0, 1, 2, 1000}) {
+  for (const std::int64_t count : {0, 1, 2, 1000})
     for (const Threads threads : {Threads{}, Threads{1}, Threads{2}, Threads{7}, Threads{50}}) {
       std::vector<int> times(static_cast<std::size_t>(count), 0);
       for_each_index(count, threads, [&](std::int64_t i) { ++times[static_cast<std::size_t>(i)]; });
       CHECK(times == std::vector<int>(static_cast<std::size_t>(count), 1));
     }
-  }
 }
 
 TEST_CASE("no more threads work than are asked for, and each of them can") {
@@ -39,7 +38,7 @@ TEST_CASE("no more threads work than are asked for, and each of them can") {
 }
 
 TEST_CASE("what reaches the caller is what the smallest failing index throws, with any number of threads") {
-  for (const std::int64_t threads : {1, 2, 7}) {
+  for (const std::int64_t threads : {1, 2, 7})
     for (int repeat = 0; repeat < 50; ++repeat) {
       std::string said;
       try {
@@ -52,7 +51,6 @@ TEST_CASE("what reaches the caller is what the smallest failing index throws, wi
       }
       CHECK(said == "40");
     }
-  }
 }
 
 TEST_CASE("results come in the order of their indices, with any number of threads") {

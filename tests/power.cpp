@@ -13,6 +13,7 @@
 
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
+#include "rejection.hpp"
 
 using namespace impact_damper;
 
@@ -39,8 +40,7 @@ const Power& power() {
     input.claims = claims_on_scenes_of(catalogue, read_claims(source / "data/claims.json").claims);
     input.further = catalogue.runs;
     input.asked = catalogue.responses;
-    Record record;
-    record.impacts = record.contacts = true;
+    const Record record{.impacts = true, .contacts = true};
     for (const CatalogueScene& scene : catalogue.scenes)
       input.runs[scene.name] =
           simulate(read_scene(source / "data/scenes" / (scene.name + ".json")), Exact{}, record);
@@ -91,8 +91,7 @@ TEST_CASE("the recorded table has every number of every scene, of the analysis a
   const std::vector<PowerNumber>& numbers = power().numbers();
   REQUIRE(rows.size() == numbers.size());
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    CAPTURE(numbers[i].of);
-    CAPTURE(numbers[i].name);
+    INFO("of ", numbers[i].of, ", name ", numbers[i].name);
     CHECK(rows[i]["of"] == numbers[i].of);
     CHECK(rows[i]["name"] == numbers[i].name);
     CHECK(rows[i]["value"] == numbers[i].value);
@@ -112,8 +111,7 @@ TEST_CASE("a recorded change turns the recorded claims, and the next smaller one
        {Tried{"nu4-e06", "mass_ratio", "up"}, Tried{"nu2-e06-zeta08", "damping_ratio", "up"},
         Tried{"nu1-e06", "restitution", "down"}, Tried{"nu2-e04", "x0", "down"},
         Tried{"columns", "impacts.relative_velocity", "up"}}) {
-    CAPTURE(tried.of);
-    CAPTURE(tried.name);
+    INFO("of ", tried.of, ", name ", tried.name);
     const auto row = std::ranges::find_if(recorded()["numbers"], [&](const nlohmann::json& each) {
       return each["of"] == tried.of && each["name"] == tried.name;
     });
@@ -133,8 +131,7 @@ TEST_CASE("a recorded change turns the recorded claims, and the next smaller one
 
 TEST_CASE("a number that turns no verdict as it is turns none") {
   for (const PowerNumber& number : power().numbers()) {
-    CAPTURE(number.of);
-    CAPTURE(number.name);
+    INFO("of ", number.of, ", name ", number.name);
     const bool is_quick = number.of != "nu2-e06";  // its steady motions would be searched again, for seconds
     if (number.name == "bins" || (number.name == "mass_ratio" && is_quick))
       CHECK(power().turned(number, number.value).empty());
@@ -142,8 +139,7 @@ TEST_CASE("a number that turns no verdict as it is turns none") {
 }
 
 TEST_CASE("a changed scene changes its further runs, each with its own numbers in place of the scene's") {
-  Scene scene;
-  scene.until_amplitude = 4;
+  const Scene scene{.until_amplitude = 4};
   PowerInput input;
   input.runs["small"] = simulate(scene, Exact{}, Record{});
   input.further = {{"small.later", "small", {{"x0", 7}}, {}, Record{}}};
@@ -177,6 +173,6 @@ TEST_CASE("the tests that the table names exist") {
     const std::size_t colon = name.find(": ");
     REQUIRE(colon != std::string::npos);
     const std::string cases = text_of(source / "tests" / (name.substr(0, colon) + ".cpp"));
-    CHECK(cases.find("TEST_CASE(\"" + name.substr(colon + 2) + "\")") != std::string::npos);
+    CHECK(contains(cases, "TEST_CASE(\"" + name.substr(colon + 2) + "\")"));
   }
 }

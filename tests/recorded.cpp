@@ -46,9 +46,8 @@ constexpr Budget budget{.max_impacts = 1000, .max_half_cycles = 1001, .max_time 
 const Exact exact{Calibration::fixed_wall, budget, 2'000'003};
 const Restitution restitution{1e-7, budget, 2'000'003};
 Cem cem(double time_step, std::int64_t max_steps) {
-  Cem options{.time_step = time_step, .locate = true, .unstable = true};
-  options.max_steps = max_steps;
-  options.budget = budget;
+  Cem options{
+      .time_step = time_step, .locate = true, .unstable = true, .max_steps = max_steps, .budget = budget};
   return options;
 }
 

@@ -25,21 +25,19 @@ inline Quad absolute(Quad x) { return x < 0 ? -x : x; }
 template <std::size_t N>
 Matrix<N> product(const Matrix<N>& a, const Matrix<N>& b) {
   Matrix<N> c{};
-  for (std::size_t i = 0; i < N; ++i) {
+  for (std::size_t i = 0; i < N; ++i)
     for (std::size_t k = 0; k < N; ++k) {
       if (a[i][k] == 0) continue;
       for (std::size_t j = 0; j < N; ++j) c[i][j] += a[i][k] * b[k][j];
     }
-  }
   return c;
 }
 
 template <std::size_t N>
 Vector<N> applied(const Matrix<N>& a, const Vector<N>& u) {
   Vector<N> v{};
-  for (std::size_t i = 0; i < N; ++i) {
+  for (std::size_t i = 0; i < N; ++i)
     for (std::size_t j = 0; j < N; ++j) v[i] += a[i][j] * u[j];
-  }
   return v;
 }
 
@@ -66,9 +64,8 @@ Matrix<N> exponential(Matrix<N> a, Quad t) {
   }
   for (int n = 1; n <= 20; ++n) {
     term = product(a, term);
-    for (std::size_t i = 0; i < N; ++i) {
+    for (std::size_t i = 0; i < N; ++i)
       for (std::size_t j = 0; j < N; ++j) sum[i][j] += (term[i][j] /= n);
-    }
   }
   for (int n = 0; n < squarings; ++n) sum = product(sum, sum);
   return sum;

@@ -42,7 +42,7 @@ const std::vector<Scene> many_scenes{
 TEST_CASE(
     "an impact keeps the momentum, turns the relative velocity into -e times it and loses the stated "
     "energy") {
-  for (double nu : {1e-6, 0.02, 1.0, 40.0}) {
+  for (double nu : {1e-6, 0.02, 1.0, 40.0})
     for (double e : {0.0, 0.3, 0.6, 1.0}) {
       const Scene scene{.x0 = 0,
                         .until_time = 0.5 + 1e-9,
@@ -58,7 +58,6 @@ TEST_CASE(
       CHECK(run.energy->impact_loss[0] == doctest::Approx(nu * (1 - e * e) / (2 * (1 + nu))).epsilon(1e-15));
       CHECK(std::abs(run.energy->residual) < 1e-15);
     }
-  }
 }
 
 TEST_CASE("bouncing to rest ends after 2 w / (a (1 - e)) under a constant relative acceleration") {
@@ -220,8 +219,7 @@ TEST_CASE("bounce-down that ends stuck costs w^2 / (pi A^2) per radian and mass 
 
 TEST_CASE("e = 1 conserves energy through a hundred thousand impacts") {
   const Scene scene{.x0 = 2, .until_time = 1e7, .dampers = {{.mass_ratio = 0.3, .restitution = 1}}};
-  Restitution options;
-  options.budget.max_impacts = 100000;
+  const Restitution options{.budget = {.max_impacts = 100000}};
   const Run run = simulate(scene, options, everything());
   CHECK(run.stop_reason == StopReason::impact_budget);
   CHECK(run.impacts->time.size() == 100000);
@@ -233,8 +231,7 @@ TEST_CASE("e = 1 conserves energy through a hundred thousand impacts") {
 TEST_CASE("the accumulation tolerance does not show in the motion") {
   std::vector<Run> runs;
   for (double tolerance : {1e-6, 1e-8, 1e-10}) {
-    Restitution options;
-    options.accumulation_tolerance = tolerance;
+    const Restitution options{.accumulation_tolerance = tolerance};
     runs.push_back(simulate({.x0 = 8, .until_time = 80}, options, everything()));
   }
   for (const Run& run : runs) {
@@ -269,13 +266,11 @@ TEST_CASE("the forced solution with two symmetric impacts per cycle holds for te
   double side = 1;
   while (since < 0) since += period, side = -side;
   while (since >= period) since -= period, side = -side;
-  Scene scene;
-  scene.damper().mass_ratio = nu;
-  scene.damper().restitution = e;
-  scene.force_amplitude = side * f0;
-  scene.force_frequency = omega;
-  scene.x0 = x(since);
-  scene.v0 = v(since);
+  Scene scene{.x0 = x(since),
+              .v0 = v(since),
+              .force_amplitude = side * f0,
+              .force_frequency = omega,
+              .dampers = {{.mass_ratio = nu, .restitution = e}}};
   scene.damper().y0 = x(0) + speed * since - scene.x0;
   scene.damper().w0 = speed - scene.v0;
   scene.until_time = 1e4 * 2 * period;
@@ -329,7 +324,7 @@ TEST_CASE("where an impact throws x back, its height then is the half cycle's am
 TEST_CASE("x thrown back just as it comes to zero begins no half cycle by rounding") {
   // Released from the left wall at x0 = 1, the secondary mass flies straight and is at the right one when x
   // is zero; a heavy one turns the primary mass back there. Rounding puts x on either side.
-  for (int n = -4; n <= 4; ++n) {
+  for (int n = -4; n <= 4; ++n)
     for (double nu = 2; nu < 1e6; nu *= 1.1) {
       const Scene scene{.x0 = 1 + n * std::numeric_limits<double>::epsilon(),
                         .until_time = 1.6,
@@ -338,7 +333,6 @@ TEST_CASE("x thrown back just as it comes to zero begins no half cycle by roundi
       REQUIRE(run.impacts->time.size() == 1);
       for (double amplitude : run.half_cycles->amplitude) CHECK(amplitude > 0.5);
     }
-  }
 }
 
 TEST_CASE("a fast light mass costs the primary mass's speed no digits") {
@@ -349,8 +343,7 @@ TEST_CASE("a fast light mass costs the primary mass's speed no digits") {
                     .v0 = 20,
                     .until_time = 20,
                     .dampers = {{.mass_ratio = 2e-7, .restitution = 1, .w0 = -34488}}};
-  Restitution options;
-  options.budget.max_impacts = 1'000'000;
+  const Restitution options{.budget = {.max_impacts = 1'000'000}};
   const Run run = simulate(scene, options, {.energy = true});
   const double impacts = double(run.energy->impact_loss.size());
   CHECK(impacts > 600'000);

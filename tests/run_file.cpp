@@ -6,17 +6,25 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <random>
+#include <regex>
+#include <string>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/sha256.hpp"
 #include "impact_damper/engine_options.hpp"
 #include "impact_damper/io/file_output.hpp"
+#include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/provenance.hpp"
+#include "impact_damper/io/run_columns.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
+#include "rejection.hpp"
 #include "same_run.hpp"
 
 using namespace impact_damper;
@@ -24,41 +32,19 @@ using namespace impact_damper;
 namespace {
 
 using Lines = std::vector<std::string>;
+using Json = nlohmann::ordered_json;
 
-Engine lagged_cem() {
-  Cem engine;
-  engine.time_step = 1e-4;
-  engine.damper = Damper::lagged;
-  engine.budget.max_time = 1e6;
-  return engine;
-}
+const Engine lagged_cem = Cem{.time_step = 1e-4, .damper = Damper::lagged, .budget = {.max_time = 1e6}};
 
-Engine cem_of_two_rates() {
-  Cem engine;
-  engine.time_step = 1e-4;
-  engine.locate = true;
-  engine.large_step = 0.1;
-  engine.stuck_speed = 0.02;
-  engine.budget.max_time = 1e6;
-  return engine;
-}
+const Engine cem_of_two_rates = Cem{
+    .time_step = 1e-4, .locate = true, .large_step = 0.1, .stuck_speed = 0.02, .budget = {.max_time = 1e6}};
 
-Engine two_body_exact() {
-  Exact engine;
-  engine.calibration = Calibration::two_body;
-  engine.budget.max_time = 1e6;
-  return engine;
-}
+const Engine two_body_exact = Exact{.calibration = Calibration::two_body, .budget = {.max_time = 1e6}};
 
-Engine restitution_on_a_budget() {
-  Restitution engine;
-  engine.accumulation_tolerance = 1e-5;
-  engine.budget = {3, 4, 5.5};
-  engine.max_steps = 6;
-  return engine;
-}
+const Engine restitution_on_a_budget =
+    Restitution{.accumulation_tolerance = 1e-5, .budget = {3, 4, 5.5}, .max_steps = 6};
 
-Run full_run(Engine engine = lagged_cem()) {
+Run full_run(const Engine& engine = lagged_cem) {
   Run run;
   run.stop_reason = StopReason::impact_budget;
   run.end_time = 7.25;
@@ -96,6 +82,13 @@ Lines problems(const std::string& text) {
     return error.problems();
   }
   return {};
+}
+// Of a text with one change, which must be one problem.
+std::string only_problem(const std::string& text, const std::string& old, const std::string& by) {
+  CAPTURE(old);
+  const Lines found = problems(replaced(text, old, by));
+  REQUIRE(found.size() == 1);
+  return found[0];
 }
 
 }  // namespace
@@ -157,7 +150,7 @@ TEST_CASE("a run of a scene in units says what one unit of each column is in SI,
       R"("end_time": 7.25,
  "units": {"length_m": 0.01, "time_s": 0.05, "velocity_m_per_s": 0.19999999999999998, "mass_kg": 40, "force_N": 160, "energy_J": 1.6},
  "half_cycles": {)";
-  CHECK(text.find(units) != std::string::npos);
+  CHECK(contains(text, units));
   CHECK(run_text(parse_run("r.json", text)) == run_text(full_run()));
 }
 
@@ -173,7 +166,7 @@ TEST_CASE("units that do not go together are rejected, whichever of them is 1 pe
     const Lines found = problems(replaced(text, given, wrong));
     REQUIRE(!found.empty());
     CHECK(found[0].starts_with("r.json: /units/"));
-    CHECK(found[0].find("must be ") != std::string::npos);
+    CHECK(contains(found[0], "must be "));
   }
   const Lines missing = problems(replaced(text, "\"mass_kg\": 40, ", ""));
   REQUIRE(!missing.empty());
@@ -235,7 +228,7 @@ TEST_CASE("in SI every column of the CSV is multiplied by its own unit, and its 
 }
 
 TEST_CASE("a run that is read and written again has the same bytes, whatever its engine and sections") {
-  for (const Engine& engine : {two_body_exact(), restitution_on_a_budget(), cem_of_two_rates(),
+  for (const Engine& engine : {two_body_exact, restitution_on_a_budget, cem_of_two_rates,
                                Engine(Cem{.time_step = 1e-5, .budget = {.max_time = 1e6}})}) {
     Run run = full_run(engine);
     CHECK(run_text(parse_run("r.json", run_text(run))) == run_text(run));
@@ -292,7 +285,7 @@ TEST_CASE("each option of each engine survives the file, and one that is out of 
 }
 
 TEST_CASE("a file of before the searches' steps were an option was made with the usual ones") {
-  for (const Engine& engine : {two_body_exact(), Engine(Restitution{.budget = {.max_time = 1e6}})}) {
+  for (const Engine& engine : {two_body_exact, Engine(Restitution{.budget = {.max_time = 1e6}})}) {
     std::string text = replaced(run_text(full_run(engine)), "\"max_steps\": 10000000, ", "");
     text = sealed(text.substr(0, text.rfind(seal_begin)));
     CHECK(parse_run("r.json", text).engine == engine);
@@ -315,9 +308,8 @@ TEST_CASE("every bit of a number survives the file") {
   run.history->v = run.history->dampers[0].y = run.history->dampers[0].w = run.history->time;
   const std::vector<double> back = parse_run("r.json", run_text(run)).history->x;
   REQUIRE(back.size() == x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) {
+  for (std::size_t i = 0; i < x.size(); ++i)
     CHECK(std::bit_cast<std::uint64_t>(back[i]) == std::bit_cast<std::uint64_t>(x[i]));
-  }
 }
 
 TEST_CASE("any other byte makes another digest, which is told unless something plainer is") {
@@ -352,22 +344,20 @@ TEST_CASE("a file whose content was changed and that is sealed anew is read") {
 }
 
 TEST_CASE("SHA-256 is that of the standard's examples, at every length about a block's") {
-  // FIPS 180-4's examples, and a million times "a".
-  CHECK(sha256("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  CHECK(sha256("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-  CHECK(sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq") ==
-        "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
-  CHECK(sha256(std::string(1'000'000, 'a')) ==
-        "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
-  // 119 bytes are the most that two blocks hold beside the end, 120 the least that three do (Python's
-  // hashlib).
-  CHECK(sha256(std::string(119, '\xff')) ==
-        "b863f94597d433ef2280e3b4656f13ea265a79bb8047287321c218905b03c99b");
-  CHECK(sha256(std::string(120, '\xff')) ==
-        "9088fee917e5a748c2f0b4f5458c1cbdabbd696291c69be6e605bae0ef779e8f");
-  CHECK(sha256(std::string(64, '\0')) == "f5a5fd42d16a20302798ef6ed309979b43003d2320d9f0e8ea9831a92759fb4b");
-  CHECK(sha256(std::string(55, 'x')) == "d5e285683cd4efc02d021a5c62014694958901005d6f71e89e0989fac77e4072");
-  CHECK(sha256(std::string(56, 'x')) == "04c26261370ee7541549d16dee320c723e3fd14671e66a099afe0a377c16888e");
+  // FIPS 180-4's examples, a million times "a", and by Python's hashlib: 119 bytes are the most that two
+  // blocks hold beside the end, 120 the least that three do.
+  const std::string two_blocks = "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq";
+  for (const auto& [text, digest] : std::vector<std::pair<std::string, std::string>>{
+           {"abc", "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"},
+           {"", "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"},
+           {two_blocks, "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1"},
+           {std::string(1'000'000, 'a'), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0"},
+           {std::string(119, '\xff'), "b863f94597d433ef2280e3b4656f13ea265a79bb8047287321c218905b03c99b"},
+           {std::string(120, '\xff'), "9088fee917e5a748c2f0b4f5458c1cbdabbd696291c69be6e605bae0ef779e8f"},
+           {std::string(64, '\0'), "f5a5fd42d16a20302798ef6ed309979b43003d2320d9f0e8ea9831a92759fb4b"},
+           {std::string(55, 'x'), "d5e285683cd4efc02d021a5c62014694958901005d6f71e89e0989fac77e4072"},
+           {std::string(56, 'x'), "04c26261370ee7541549d16dee320c723e3fd14671e66a099afe0a377c16888e"}})
+    CHECK(sha256(text) == digest);
 }
 
 TEST_CASE("a run with energies has a loss for each impact, none less and none more") {
@@ -392,10 +382,7 @@ TEST_CASE("a number that is not finite is never written") {
 TEST_CASE("a run file that was changed by hand is rejected with the place and the reason") {
   const std::string text = run_text(full_run());
   const auto only = [&](const std::string& old, const std::string& by) {
-    CAPTURE(old);
-    const Lines found = problems(replaced(text, old, by));
-    REQUIRE(found.size() == 1);
-    return found[0];
+    return only_problem(text, old, by);
   };
   CHECK(only("run/1", "run/2") ==
         "r.json: /schema: must be one of \"impact-damper/run/1\", got the string \"impact-damper/run/2\"");
@@ -491,9 +478,7 @@ TEST_CASE("all that the default budgets allow and the longest history make a fil
 TEST_CASE("a scene file names what differs from the defaults") {
   const Scene scene =
       parse_scene("s.json", R"({"mass_ratio": 0.04, "until_amplitude": 0.01, "description": "d"})");
-  Scene expected;
-  expected.damper().mass_ratio = 0.04;
-  expected.until_amplitude = 0.01;
+  const Scene expected{.until_amplitude = 0.01, .dampers = {{.mass_ratio = 0.04}}};
   CHECK(scene == expected);
   CHECK(parse_scene("s.json", scene_text(scene)) == scene);
 }
@@ -529,8 +514,7 @@ void check_same(const Run& a, const Run& b) {
 }  // namespace
 
 TEST_CASE("each entry of a run reads back as it was, be it absent, zero or neither") {
-  for (const Engine& engine :
-       {two_body_exact(), restitution_on_a_budget(), lagged_cem(), cem_of_two_rates()}) {
+  for (const Engine& engine : {two_body_exact, restitution_on_a_budget, lagged_cem, cem_of_two_rates}) {
     Run run = full_run(engine);
     check_same(parse_run("run.json", run_text(run)), run);
     run.scene = {0.3, 5, 6, 9, 10, 11, {}, {{0.1, 0.2, 1, 4, 0.7, 8}}};
@@ -546,7 +530,7 @@ TEST_CASE("each entry of a run reads back as it was, be it absent, zero or neith
 TEST_CASE("a run file says which program made it") {
   const std::string text = run_text(full_run());
   const Provenance made_by = provenance();
-  CHECK(text.find("\"schema\": \"impact-damper/run/1\"") != text.npos);
+  CHECK(contains(text, "\"schema\": \"impact-damper/run/1\""));
   for (const auto& [key, value] : {std::pair{"version", made_by.version},
                                    {"commit", made_by.commit},
                                    {"compiler", made_by.compiler},
@@ -555,14 +539,14 @@ TEST_CASE("a run file says which program made it") {
                                    {"system", made_by.system}}) {
     const std::string entry = '"' + std::string(key) + "\": \"" + std::string(value) + '"';
     CAPTURE(entry);
-    CHECK(text.find(entry) != text.npos);
+    CHECK(contains(text, entry));
   }
 }
 
 namespace {
 
 Run run_of_several() {
-  Run run = full_run(restitution_on_a_budget());
+  Run run = full_run(restitution_on_a_budget);
   run.scene.dampers = {{.mass_ratio = 0.1, .clearance = 1, .y0 = 0.5}, {.restitution = 1, .clearance = 0.25}};
   run.half_cycles->dampers = {{{1, 0}}, {{2, 0}}};
   run.impacts->damper = {0, 1, 1};
@@ -578,7 +562,7 @@ TEST_CASE("a run file of several dampers numbers them from 1 and has columns of 
   const std::string text = run_text(run_of_several());
   const auto holds = [&](const std::string& part) {
     CAPTURE(part);
-    CHECK(text.find(part) != text.npos);
+    CHECK(contains(text, part));
   };
   holds(
       R"("scene": {"damping_ratio": 0, "x0": 6, "v0": 0, "force_amplitude": 0, "force_frequency": 1, "dampers": [{"mass_ratio": 0.1, "restitution": 0.6, "clearance": 1, "wall_stiffness": 10000, "y0": 0.5, "w0": 0}, {"mass_ratio": 0.02, "restitution": 1, "clearance": 0.25, "wall_stiffness": 10000, "y0": 0, "w0": 0}], "until_time": null,)");
@@ -629,10 +613,7 @@ TEST_CASE("a run of several dampers reads back as it was") {
 TEST_CASE("columns of dampers that are not those of the scene are rejected") {
   const std::string text = run_text(run_of_several());
   const auto only = [&](const std::string& old, const std::string& by) {
-    CAPTURE(old);
-    const Lines found = problems(replaced(text, old, by));
-    REQUIRE(found.size() == 1);
-    return found[0];
+    return only_problem(text, old, by);
   };
   CHECK(only("\"damper\": [1,2,2]", "\"damper\": [1,2,3]") ==
         "r.json: /impacts/damper/2: must be a whole number >= 1 and <= 2, got 3");
@@ -676,15 +657,11 @@ TEST_CASE(
   const std::string text =
       R"({"x0": 2, "dampers": [{}, {"mass_ratio": 0.01, "restitution": 0.5, "clearance": 3,
                                "wall_stiffness": 5, "y0": 2, "w0": -1}], "until_time": 4})";
-  Scene expected;
-  expected.x0 = 2;
-  expected.until_time = 4;
-  expected.dampers = {SceneDamper{}, {0.01, 0.5, 3, 5, 2, -1}};
+  const Scene expected{.x0 = 2, .until_time = 4, .dampers = {SceneDamper{}, {0.01, 0.5, 3, 5, 2, -1}}};
   const Scene scene = parse_scene("s.json", text);
   CHECK(scene == expected);
   CHECK(parse_scene("s.json", scene_text(scene)) == scene);
-  CHECK(scene_text(scene).find("\"mass_ratio\": 0.02, \"restitution\": 0.6, \"clearance\": 1,") !=
-        std::string::npos);
+  CHECK(contains(scene_text(scene), "\"mass_ratio\": 0.02, \"restitution\": 0.6, \"clearance\": 1,"));
 }
 
 TEST_CASE("the longest list of dampers is read from a file as it was") {
@@ -717,4 +694,149 @@ TEST_CASE("a list of dampers beside numbers of one is rejected with all that is 
                                     "s.json: /dampers/0/mass_ratio: must be >= 1e-09 and <= 1e+06, got 0",
                                     "s.json: /dampers/0/x0: unknown key, did you mean \"w0\"?"});
   }
+}
+
+// --- The table of columns ----------------------------------------------------------------------------------
+
+// The table of columns of a run against what else lists them: the schema of run files, and the types that the
+// package for browsers and node declares.
+
+namespace {
+
+std::string source(const std::string& file) { return read_text(SOURCE_FOLDER "/" + file); }
+
+// The schema's rule for a number.
+Json rule_of(const NumberRange& range, const double&) {
+  return {{"type", "number"}, {"minimum", range.least}, {"maximum", range.most}};
+}
+Json rule_of(const NumberRange& range, const std::optional<double>&) {
+  return {{"type", {"number", "null"}}, {"minimum", range.least}, {"maximum", range.most}};
+}
+template <class Whole>
+Json rule_of(const NumberRange& range, const Whole&) {
+  const bool is_bounded = range.most < std::numeric_limits<double>::max();
+  const auto most = is_bounded ? std::int64_t(range.most) : std::numeric_limits<std::int64_t>::max();
+  return {{"type", "integer"}, {"minimum", range.least}, {"maximum", most}};
+}
+
+// The schema of a section or a part of one, without descriptions, and its additions for runs with a list of
+// dampers and for those without.
+struct Schema {
+  Json whole, with_list, without_list;
+};
+
+template <class Owner>
+Schema schema_of(const Json& type) {
+  Schema schema;
+  Json properties, required = Json::array(), of_list = Json::array();
+  const Owner owner{};
+  for_each_column(owner, true, [&](const RunColumnInfo& info, const auto& value) {
+    using Value = std::remove_cvref_t<decltype(value)>;
+    const std::string name(info.name);
+    (info.without_list == WithoutList::same ? required : of_list).push_back(name);
+    if constexpr (HasRunColumns<Value>) {
+      properties[name] = schema_of<Value>("object").whole;
+    } else if constexpr (PartsOfDampers<Value>) {
+      const Json part = schema_of<typename Value::value_type>("object").whole;
+      if (info.without_list == WithoutList::in_section) {
+        properties.update(part["properties"]);
+        schema.without_list["required"] = part["required"];
+        for (const auto& column : part["properties"].items())
+          schema.with_list["properties"][column.key()] = false;
+      }
+      properties[name] = {{"type", "array"}, {"items", part}};
+    } else if constexpr (std::is_arithmetic_v<Value>) {
+      properties[name] = rule_of(info.range, value);
+    } else {
+      properties[name] = {{"type", "array"}, {"items", rule_of(info.range, typename Value::value_type{})}};
+    }
+    if (info.without_list != WithoutList::same) schema.without_list["properties"][name] = false;
+  });
+  schema.whole = {
+      {"type", type}, {"properties", properties}, {"required", required}, {"additionalProperties", false}};
+  schema.with_list["required"] = of_list;
+  return schema;
+}
+
+Json without_descriptions(Json schema) {
+  if (schema.is_structured()) {
+    if (schema.is_object()) schema.erase("description");
+    for (Json& each : schema) each = without_descriptions(each);
+  }
+  return schema;
+}
+
+// Checks that the description of each column, or of what it is in, names its unit. above: of what it is in.
+template <class Owner>
+void units_are_named(const Json& schema, const std::string& above) {
+  const auto words_of = [](Dimension dimension) {
+    return dimension == Dimension::time       ? "1/Omega_n"
+           : dimension == Dimension::length   ? "of epsilon"
+           : dimension == Dimension::velocity ? "epsilon Omega_n"
+                                              : "K epsilon\\^2";
+  };
+  const Owner owner{};
+  for_each_column(owner, true, [&](const RunColumnInfo& info, const auto& value) {
+    using Value = std::remove_cvref_t<decltype(value)>;
+    const Json& its = schema.at("properties").at(std::string(info.name));
+    const std::string text = above + its.at("description").get<std::string>();
+    CAPTURE(text);
+    if constexpr (HasRunColumns<Value>)
+      units_are_named<Value>(its, text);
+    else if constexpr (PartsOfDampers<Value>)
+      units_are_named<typename Value::value_type>(its["items"], text);
+    else if (info.dimension != Dimension::ratio)
+      CHECK(std::regex_search(text, std::regex(std::string(words_of(info.dimension)) + "[.;]")));
+  });
+}
+
+// What the package declares of a section: the columns and numbers that every run has.
+template <class Section>
+std::string type_of() {
+  std::string columns, numbers;
+  const Section section{};
+  for_each_column(section, true, [&](const RunColumnInfo& info, const auto& value) {
+    if (info.without_list != WithoutList::same || HasRunColumns<std::remove_cvref_t<decltype(value)>>) return;
+    std::string& words = std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>> ? numbers : columns;
+    words.append(words.empty() ? "\"" : " | \"").append(info.name) += '"';
+  });
+  return "Columns & Record<" + columns + ", Float64Array>" +
+         (numbers.empty() ? "" : " & Record<" + numbers + ", number>") + ";";
+}
+
+// Calls visit(name, section of its type) for each section.
+template <class Visit>
+void for_each_section(const Visit& visit) {
+  const Run run{};
+  for_each_column(run, true, [&]<class Section>(const RunColumnInfo& info, const std::optional<Section>&) {
+    visit(std::string(info.name), Section{});
+  });
+}
+
+}  // namespace
+
+TEST_CASE("the schema of run files has the columns of the table, in its order, with their ranges and units") {
+  const Json schema = Json::parse(source("data/schema/run.schema.json"));
+  Json with_list, without_list;
+  for_each_section([&]<class Section>(const std::string& name, const Section&) {
+    CAPTURE(name);
+    const Schema expected = schema_of<Section>({"object", "null"});
+    const Json& given = schema["properties"][name];
+    CHECK(without_descriptions(given) == expected.whole);
+    units_are_named<Section>(given, given["description"]);
+    with_list["properties"][name] = expected.with_list;
+    without_list["properties"][name] = expected.without_list;
+  });
+  CHECK(nlohmann::json(schema["then"]) == nlohmann::json(with_list));
+  CHECK(nlohmann::json(schema["else"]) == nlohmann::json(without_list));
+}
+
+TEST_CASE("the package for browsers and node declares the columns that every run has") {
+  const std::string types =
+      std::regex_replace(source("src/wasm/package/index.d.ts"), std::regex("\\s+"), " ");
+  for_each_section([&]<class Section>(const std::string& name, const Section&) {
+    const std::string expected = name + "?: " + type_of<Section>();
+    CAPTURE(expected);
+    CHECK(contains(types, expected));
+  });
 }

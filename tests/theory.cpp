@@ -44,7 +44,7 @@ Departure fly(double e, double amplitude, Departure from) {
 }  // namespace
 
 TEST_CASE("one impact per half cycle is a fixed point of the impact map") {
-  for (double e : {0.4, 0.6, 0.8}) {
+  for (double e : {0.4, 0.6, 0.8})
     for (double factor : {1.0001, 1.2, 2.0, 4.0}) {
       const double amplitude = factor * fold_amplitude(e);
       const auto motion = single_impact(e, amplitude);
@@ -58,12 +58,11 @@ TEST_CASE("one impact per half cycle is a fixed point of the impact map") {
             doctest::Approx((1 - e * e) * w * w / (pi * amplitude * amplitude)).epsilon(1e-13));
       CHECK(motion->phase_deg == doctest::Approx(90 + motion->theta * 180 / pi));
     }
-  }
 }
 
 TEST_CASE(
     "a disturbed single-impact motion returns to it below the loss of equal spacing and leaves it above") {
-  for (double e : {0.4, 0.6, 0.8}) {
+  for (double e : {0.4, 0.6, 0.8})
     for (double factor : {0.98, 1.02}) {
       const double amplitude = factor * equal_spacing_amplitude(e);
       const auto motion = single_impact(e, amplitude);
@@ -75,7 +74,6 @@ TEST_CASE(
       else
         CHECK(std::abs(at.phase - motion->theta) > 1e-5);
     }
-  }
   CHECK(equal_spacing_amplitude(0.6) == doctest::Approx(0.366).epsilon(5e-4 / 0.366));
 }
 

@@ -14,23 +14,16 @@ namespace {
 
 // A mast of 40 kg at 20 rad/s, worked through by hand: every dimensionless number is a short decimal.
 SceneInUnits mast() {
-  SceneInUnits scene;
-  scene.mass = 40;
-  scene.stiffness = 16000;
-  scene.damper().secondary_mass = 1.6;
-  scene.damper().clearance = 10;
-  scene.damper().restitution = 0.7;
-  scene.damping = 3.2;
-  scene.damper().contact_stiffness = 4e8;
-  scene.initial_displacement = 60;
-  scene.initial_velocity = -50;
-  scene.damper().secondary_displacement = 2.5;
-  scene.damper().secondary_velocity = 20;
-  scene.exciting_force = 4;
-  scene.exciting_frequency = 3;
-  scene.until_seconds = 30;
-  scene.until_millimetres = 0.5;
-  return scene;
+  return {.mass = 40,
+          .stiffness = 16000,
+          .damping = 3.2,
+          .initial_displacement = 60,
+          .initial_velocity = -50,
+          .exciting_force = 4,
+          .exciting_frequency = 3,
+          .until_seconds = 30,
+          .until_millimetres = 0.5,
+          .dampers = {{1.6, 10, 0.7, 4e8, 2.5, 20}}};
 }
 
 doctest::Approx near(double value) { return doctest::Approx(value).epsilon(1e-14); }  // a few roundings
@@ -66,16 +59,8 @@ TEST_CASE("the scales are those of the primary system and the clearance") {
 }
 
 TEST_CASE("what is not said of a scene in units is at rest, undamped, unforced and has the usual walls") {
-  SceneInUnits scene;
-  scene.mass = 2;
-  scene.stiffness = 50;
-  scene.damper().secondary_mass = 0.1;
-  scene.damper().clearance = 4;
-  scene.until_seconds = 1;
-  Scene expected;
-  expected.damper().mass_ratio = 0.05;
-  expected.x0 = 0;
-  expected.until_time = 5;
+  const SceneInUnits scene{.mass = 2, .stiffness = 50, .until_seconds = 1, .dampers = {{0.1, 4}}};
+  const Scene expected{.x0 = 0, .until_time = 5, .dampers = {{.mass_ratio = 0.05}}};
   CHECK(dimensionless(scene) == expected);
 }
 
@@ -83,17 +68,12 @@ TEST_CASE("a motion in units obeys the equations with their units") {
   // Until the secondary mass meets a wall the primary mass is alone: M x'' + C x' + K x = F sin(2 pi f t).
   // Its closed form in millimetres and seconds, from rest, against the run of the dimensionless scene.
   SceneInUnits given = mast();
-  given.damper().clearance = 1000;
-  given.damper().secondary_displacement = 500;
-  given.damper().secondary_velocity = 0;
+  given.dampers = {{1.6, 1000, 0.7, 4e8, 500, 0}};
   given.until_millimetres.reset();
   given.until_seconds = 2;
-  given.initial_velocity = 0;
-  given.initial_displacement = 0;
+  given.initial_velocity = given.initial_displacement = 0;
   const Scales scales = scales_of(given);
-  Record record;
-  record.impacts = true;
-  record.history = {{0, 2 / scales.of(Dimension::time), 41}};
+  const Record record{.impacts = true, .history = {{0, 2 / scales.of(Dimension::time), 41}}};
   const Run run = simulate(dimensionless(given), Exact{}, record);
   REQUIRE(run.impacts->time.empty());
 
@@ -135,17 +115,14 @@ TEST_CASE("keys of both kinds in one file are all named") {
 }
 
 TEST_CASE("no number in units that is allowed makes a scale of zero or infinity") {
-  for (const double mass : {1e-15, 1e15}) {
-    for (const double stiffness : {1e-15, 1e15}) {
-      for (const double length : {1e-15, 1e15}) {
-        const Scales scales{mass, stiffness, length};
+  for (const double mass : {1e-15, 1e15})
+    for (const double stiffness : {1e-15, 1e15})
+      for (const double length : {1e-15, 1e15})
         for (const Dimension dimension : all_of<Dimension>) {
+          const Scales scales{mass, stiffness, length};
           CHECK(std::isnormal(scales.of(dimension)));
           CHECK(std::isnormal(scales.in_si(dimension)));
         }
-      }
-    }
-  }
 }
 
 TEST_CASE("each unit has a name in a scene in units, without units, and as the end of a name in SI") {
@@ -223,15 +200,7 @@ namespace {
 // The mast with three boxes; every dimensionless number is a short decimal.
 SceneInUnits mast_with_boxes() {
   SceneInUnits scene = mast();
-  scene.dampers = {{}, {}};
-  scene.dampers[0].secondary_mass = 1.6;
-  scene.dampers[0].clearance = 10;
-  scene.dampers[1] = {.secondary_mass = 0.8,
-                      .clearance = 25,
-                      .restitution = 0.5,
-                      .contact_stiffness = 4e8,
-                      .secondary_displacement = 2.5,
-                      .secondary_velocity = 20};
+  scene.dampers = {{1.6, 10}, {0.8, 25, 0.5, 4e8, 2.5, 20}};
   return scene;
 }
 

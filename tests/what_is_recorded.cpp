@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "shared_scenes.hpp"
 
 using namespace impact_damper;
+using random_scenes::scene_of;
 using reference::absent, reference::Columns, reference::columns_of;
 
 namespace {
@@ -83,18 +85,15 @@ constexpr std::uint64_t first_seed = 1, seeds = 250;
 // `property` of a trial, told as text where it does not hold, for so many random and round scenes.
 template <class Choice, class Property>
 void holds_for(Property&& property) {
-  for (const bool round : {false, true}) {
+  for (const bool round : {false, true})
     for (std::uint64_t seed = first_seed; seed < first_seed + seeds; ++seed) {
       Trial trial = trial_of<Choice>(seed, round);
       const std::string failure = property(trial);
       if (!failure.empty()) FAIL_CHECK(trial.text << "\n" << failure);
     }
-  }
 }
 
-Record everything(const Scene& scene) {
-  return {.impacts = true, .contacts = true, .energy = true, .history = {{0, *scene.until_time, 51}}};
-}
+Record everything(const Scene& scene) { return reference::everything({{0, *scene.until_time, 51}}); }
 
 std::string row_text(const std::string& name, std::size_t row, double a, double b) {
   char text[200];
@@ -297,10 +296,9 @@ std::string mirrors_but_for_rounding(Trial& trial) {
                                             : absent;
   };
   double parted = absent;  // when
-  for (const auto& [name, times, scale] : all) {
+  for (const auto& [name, times, scale] : all)
     for (std::size_t i = 0; i < run.at(name).size(); ++i)
       if (rounding(name, i) > 1e-7 * scale) parted = std::min(parted, run.at(times)[i]);
-  }
   for (const auto& [name, times, scale] : all) {
     double most = 0x1p-48 * std::max(scale, 1.0);  // of what has come until now
     for (std::size_t i = 0; i < run.at(name).size() && run.at(times)[i] < parted; ++i) {
@@ -400,7 +398,7 @@ TEST_CASE(
   for (Scene scene : scenes) {
     scene.until_time = 0.5;
     CAPTURE(scene_text(scene));
-    for (const Scene& start : {scene, mirrored(scene)}) {
+    for (const Scene& start : {scene, mirrored(scene)})
       for (bool locate : {false, true}) {
         const Run run = simulate(start, Cem{.locate = locate}, record);
         CHECK(run.impacts->time.empty());
@@ -415,6 +413,78 @@ TEST_CASE(
         CHECK(left.impacts->time.empty());
         CHECK(left.contacts->begin.empty());
       }
-    }
+  }
+}
+
+// --- Any scene ---------------------------------------------------------------------------------------------
+
+namespace {
+
+bool finite(const std::vector<double>& values) {
+  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
+
+constexpr std::uint64_t any_seeds = 2000;
+constexpr double closed = 1e-10;  // 1e4 impacts at most, each a few dozen roundings
+
+// Everything that any scene promises: finite numbers, times in order, an energy balance that closes.
+void check(const Scene& scene, const Engine& engine) {
+  const Run run = simulate(scene, engine, everything(scene));
+  CHECK(std::isfinite(run.end_time));
+  CHECK(run.end_time <= *scene.until_time);
+  CHECK((run.stop_reason == StopReason::time || run.stop_reason == StopReason::impact_budget));
+  const HalfCycles& rows = *run.half_cycles;
+  const History& history = *run.history;
+  for (const auto* column : {&rows.zero_crossing, &rows.peak_time, &rows.amplitude, &run.impacts->time,
+                             &run.impacts->relative_velocity, &run.energy->impact_loss, &history.x,
+                             &history.v, &history.dampers[0].y, &history.dampers[0].w})
+    CHECK(finite(*column));
+  for (std::size_t i = 0; i < run.impacts->time.size(); ++i) {
+    const double before = i > 0 ? run.impacts->time[i - 1] : 0;
+    CHECK(run.impacts->time[i] >= before);
+    const double w = run.impacts->relative_velocity[i];
+    CHECK((run.impacts->wall[i] == Wall::left ? w <= 0 : w >= 0));
+    CHECK(run.energy->impact_loss[i] >= 0);
+  }
+  for (std::size_t i = 0; i < run.contacts->begin.size(); ++i)
+    CHECK(run.contacts->end[i] >= run.contacts->begin[i]);
+  for (std::size_t i = 1; i < rows.zero_crossing.size(); ++i) {
+    CHECK(rows.zero_crossing[i] > rows.zero_crossing[i - 1]);
+    CHECK(rows.amplitude[i] >= 0);
+  }
+  CHECK(std::abs(run.energy->residual) < closed);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "any scene runs to its end in the exact engine, finite, in order and with an energy balance that "
+    "closes") {
+  const Exact options{.budget = {.max_impacts = 10000}};
+  for (std::uint64_t seed = first_seed; seed < first_seed + any_seeds; ++seed) {
+    const Scene scene = scene_of(seed);
+    INFO("seed ", seed, ", scene ", scene_text(scene));
+    check(scene, options);
+  }
+}
+
+// x is a rounding error of what the wall makes of it: whether it rises or falls cannot be told for a while.
+TEST_CASE("a scene whose primary mass has hardly moved when it is struck is no effort") {
+  const Exact options{.budget = {.max_impacts = 1000}};
+  for (const std::uint64_t seed : {27136u, 40313u, 99905u, 120138u, 131791u}) {
+    Scene scene = scene_of(seed);
+    REQUIRE(scene.x0 == 0);
+    CAPTURE(scene_text(scene));
+    check(scene, options);
+  }
+}
+
+TEST_CASE("any scene that begins between rigid walls runs to its end in the restitution engine") {
+  const Restitution options{.budget = {.max_impacts = 10000}};
+  for (std::uint64_t seed = first_seed; seed < first_seed + any_seeds; ++seed) {
+    Scene scene = scene_of(seed);
+    scene.damper().y0 = std::fmin(std::fmax(scene.damper().y0, 0), 1);
+    INFO("seed ", seed, ", scene ", scene_text(scene));
+    check(scene, options);
   }
 }

@@ -26,7 +26,7 @@ SOURCE = Path(__file__).resolve().parents[2]
 # Where faults are planted, and the test programs that look there.
 OWN = {"exact": ["recorded"], "restitution": ["recorded"], "cem": ["recorded"], "exact-dampers": ["recorded"],
        "restitution-dampers": ["recorded"], "cem-dampers": ["recorded"], "file": ["run_file"], "read": ["run_file"], "table": ["series"],
-       "measure": ["measures", "measures_of_runs", "measures_of_responses"]}
+       "measure": ["measures", "measures_of_runs"]}
 # The case that notices nearly all of them, where others of its program take far longer.
 MOSTLY = {engine: f"recorded: all that the {name} records is*"
           for engine, name in (("exact", "exact engine"), ("restitution", "restitution engine"), ("cem", "component element method"))}

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "impact_damper/simulate.hpp"
-#include "list_of_one.hpp"
+#include "shared_scenes.hpp"
 
 namespace oracle {
 namespace {
@@ -972,9 +972,7 @@ Prediction predict_what_can_be(Setting& setting, Comparison& result) {
 }
 
 Record everything(double end) {
-  Record record;
-  record.impacts = record.contacts = record.energy = true;
-  record.history = {{0, end, sample_count}};
+  Record record{.impacts = true, .contacts = true, .energy = true, .history = {{0, end, sample_count}}};
   return record;
 }
 Run simulated(const Scene& scene, const Engine& engine, const Record& record, bool as_list) {

@@ -40,8 +40,7 @@ SceneDamper damper(double nu, double e, double clearance, double y0, double w0) 
 }
 
 Scene scene_until(double time) {
-  Scene scene;
-  scene.until_time = time;
+  Scene scene{.until_time = time};
   return scene;
 }
 
@@ -214,15 +213,13 @@ TEST_CASE("cem knows from the first step to which side a force moves a mass at r
 }
 
 TEST_CASE("extreme mass ratios are rejected, or give finite numbers") {
-  Scene least;
-  least.damper().mass_ratio = 5e-324, least.until_time = 10;
+  const Scene least{.until_time = 10, .dampers = {{.mass_ratio = 5e-324}}};
   CHECK(!problems_of(least).empty());
   for (const double nu : {1e-9, 1e6}) {
     CAPTURE(nu);
     Scene scene = scene_until(10);
     scene.damper().mass_ratio = nu;
-    Record record;
-    record.impacts = record.contacts = record.energy = true;
+    const Record record{.impacts = true, .contacts = true, .energy = true};
     for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})})
       CHECK_NOTHROW(run_text(simulate(scene, engine, record)));  // rejects what is not finite
   }
@@ -236,10 +233,10 @@ TEST_CASE("at rest on a wall with y'' = y''' = 0 the masses stick or part as the
       for (const double omega : {0.5, 1.0, 2.0})
         for (const double y0 : {0.0, 1.0})
           for (const bool rigid : {true, false}) {
-            Scene scene;
-            scene.damper().mass_ratio = 0.25, scene.damper().restitution = f0 > 0 ? 0.5 : 0,
-            scene.damping_ratio = zeta;
-            scene.force_amplitude = f0, scene.force_frequency = omega;
+            Scene scene{.damping_ratio = zeta,
+                        .force_amplitude = f0,
+                        .force_frequency = omega,
+                        .dampers = {{.mass_ratio = 0.25, .restitution = f0 > 0 ? 0.5 : 0}}};
             scene.v0 = f0 * omega, scene.x0 = -2 * zeta * scene.v0, scene.damper().y0 = y0;
             scene.until_time = 6;
             oracle::Question question;
@@ -249,11 +246,7 @@ TEST_CASE("at rest on a wall with y'' = y''' = 0 the masses stick or part as the
             const oracle::Answer answer = oracle::answer_to(question);
             const Engine engine = rigid ? Engine(Restitution{}) : Engine(Exact{});
             const Run run = simulate(scene, engine, {.impacts = true, .contacts = true});
-            CAPTURE(zeta);
-            CAPTURE(f0);
-            CAPTURE(omega);
-            CAPTURE(y0);
-            CAPTURE(rigid);
+            INFO("zeta ", zeta, ", f0 ", f0, ", omega ", omega, ", y0 ", y0, ", rigid ", rigid);
             REQUIRE(answer.contacts.empty() == run.contacts->begin.empty());
             REQUIRE(answer.impacts.empty() == run.impacts->time.empty());
             if (!answer.contacts.empty()) {
@@ -299,9 +292,7 @@ TEST_CASE("lists in which the restitution engine was wrong once") {
 
 TEST_CASE("lists in which the exact engine was wrong once") {
   const auto list_agrees = [](double x0, const std::vector<SceneDamper>& dampers, double end = 1) {
-    Scene scene;
-    scene.x0 = x0, scene.until_time = end;
-    scene.dampers = dampers;
+    Scene scene{.x0 = x0, .until_time = end, .dampers = dampers};
     for (int order = 0; order < 2; ++order) {
       agrees_as_list(scene, Exact{});
       std::ranges::reverse(scene.dampers);
@@ -321,8 +312,7 @@ TEST_CASE("lists in which the exact engine was wrong once") {
 }
 
 TEST_CASE("slow bounces keep the digits of their distance while another mass presses its wall") {
-  Scene scene;
-  scene.x0 = -1, scene.damping_ratio = 1, scene.until_time = 0.1;
+  Scene scene{.damping_ratio = 1, .x0 = -1, .until_time = 0.1};
   scene.dampers = {{.mass_ratio = 1e-6, .restitution = 1, .clearance = 0.5, .wall_stiffness = 100},
                    {.mass_ratio = 1e-6, .restitution = 0.6, .clearance = 1, .wall_stiffness = 12.5}};
   CHECK(agrees_as_list(scene, Exact{}, 20).impacts > 100);

@@ -10,6 +10,7 @@
 #include "plain_integration.hpp"
 #include "same_run.hpp"
 #include "scenes.hpp"
+#include "shared_scenes.hpp"
 
 extern "C" {
 oracle::Quad sinq(oracle::Quad);
@@ -28,8 +29,7 @@ namespace {
 constexpr double closely = 1e-31;
 
 double off(Quad value, Quad truth) {
-  CAPTURE(text(value));
-  CAPTURE(text(truth));
+  INFO("value ", text(value), ", truth ", text(truth));
   return double(magnitude(value - truth) / (1 + magnitude(truth)));
 }
 
@@ -38,14 +38,8 @@ double between(Quad a, Quad b) { return double(magnitude(a - b)); }
 Quad pi() { return acosq(-1); }
 
 // Alone in the cavity: no impact before `end`.
-Question flight(double end) {
-  Question question;
-  question.scene.x0 = 0.25;
-  question.scene.v0 = 0.125;
-  question.scene.damper().y0 = 0.5;
-  question.scene.damper().w0 = -0.125;  // the secondary mass at rest
-  question.scene.until_time = end;
-  return question;
+Question flight(double end) {  // the secondary mass at rest
+  return {.scene = {.x0 = 0.25, .v0 = 0.125, .until_time = end, .dampers = {{.y0 = 0.5, .w0 = -0.125}}}};
 }
 
 SceneDamper damper(double nu, double e, double clearance, double y0, double w0, double stiffness = 1e4) {
@@ -53,12 +47,11 @@ SceneDamper damper(double nu, double e, double clearance, double y0, double w0, 
 }
 
 Answer answer_for(const Scene& scene, Walls walls = Walls::rigid) {
-  Question question;
-  question.scene = scene;
-  question.walls = walls;
-  question.most_steps = walls == Walls::rigid ? 32'000 : 4'000, question.most_impacts = 8'000;
-  question.samples = {0, *scene.until_time / 3, *scene.until_time};
-  return answer_to(question);
+  return answer_to({.scene = scene,
+                    .walls = walls,
+                    .samples = {0, *scene.until_time / 3, *scene.until_time},
+                    .most_steps = walls == Walls::rigid ? 32'000 : 4'000,
+                    .most_impacts = 8'000});
 }
 
 }  // namespace
@@ -86,10 +79,9 @@ TEST_CASE("an undamped flight is a cosine, with its crossings and peaks where th
 }
 
 TEST_CASE("damped and forced flights are what their closed forms say, at any damping") {
-  for (const double zeta : {0.1, 0.5, 1.5, 40.0}) {
+  for (const double zeta : {0.1, 0.5, 1.5, 40.0})
     for (const double omega : {0.01, 1.0, 30.0}) {
-      CAPTURE(zeta);
-      CAPTURE(omega);
+      INFO("zeta ", zeta, ", omega ", omega);
       Question question = flight(3);
       question.scene.damping_ratio = zeta;
       question.scene.force_amplitude = 0.01;
@@ -116,18 +108,13 @@ TEST_CASE("damped and forced flights are what their closed forms say, at any dam
       }
       CHECK(double(magnitude(answer.residual())) < 1e-28);
     }
-  }
 }
 
 TEST_CASE("a rigid wall gives back e times the relative velocity and keeps the momentum") {
-  Question question;
-  question.walls = Walls::rigid;
-  Scene& scene = question.scene;
-  scene.x0 = 0, scene.v0 = 0, scene.damper().y0 = 0.5, scene.damper().w0 = 2,
-  scene.damper().mass_ratio = 0.25, scene.damper().restitution = 0.5;
-  scene.until_time = 0.3;
-  question.samples = {0.3};
-  const Answer answer = answer_to(question);
+  const Answer answer =
+      answer_to({.scene = {.x0 = 0, .until_time = 0.3, .dampers = {damper(0.25, 0.5, 1, 0.5, 2)}},
+                 .walls = Walls::rigid,
+                 .samples = {0.3}});
   REQUIRE(answer.impacts.size() == 1);
   CHECK(off(answer.impacts[0].time, 0.25) < closely);
   CHECK(off(answer.impacts[0].relative_velocity, 2) < closely);
@@ -140,14 +127,10 @@ TEST_CASE("a rigid wall gives back e times the relative velocity and keeps the m
 }
 
 TEST_CASE("a compliant wall that is held by a heavy primary mass gives back e, half a period later") {
-  Question question;
-  Scene& scene = question.scene;
-  scene.x0 = 0, scene.damper().y0 = 0.5, scene.damper().w0 = 1, scene.damper().mass_ratio = 1e-30,
-  scene.damper().restitution = 0.5;
-  scene.damper().wall_stiffness = 1e-26;  // omega_m = 100
-  scene.until_time = 1;
-  question.samples = {1};
-  const Answer answer = answer_to(question);
+  // omega_m = 100
+  const Answer answer =
+      answer_to({.scene = {.x0 = 0, .until_time = 1, .dampers = {damper(1e-30, 0.5, 1, 0.5, 1, 1e-26)}},
+                 .samples = {1}});
   REQUIRE(answer.contacts.size() == 1);
   const Quad l = -std::log(0.5L), ratio = double(l) / std::sqrt(M_PI * M_PI + double(l) * double(l));
   const Quad length = pi() / (100 * sqrtq(1 - ratio * ratio));
@@ -158,13 +141,13 @@ TEST_CASE("a compliant wall that is held by a heavy primary mass gives back e, h
 
 TEST_CASE("a plastic impact sticks until the pair's acceleration changes its sign, under force") {
   // Both masses at rest at the right wall's impact: (1 + nu) x'' + x = f0 sin(omega t) from then on.
-  Question question;
-  question.walls = Walls::rigid;
-  Scene& scene = question.scene;
-  scene.x0 = 0, scene.damper().y0 = 0, scene.damper().restitution = 0, scene.damper().mass_ratio = 0.5;
-  scene.force_amplitude = 1, scene.force_frequency = 0.5;
-  scene.until_time = 10;
-  question.samples = {0.5, 1};
+  const Question question{.scene = {.x0 = 0,
+                                    .force_amplitude = 1,
+                                    .force_frequency = 0.5,
+                                    .until_time = 10,
+                                    .dampers = {damper(0.5, 0, 1, 0, 0)}},
+                          .walls = Walls::rigid,
+                          .samples = {0.5, 1}};
   const Answer answer = answer_to(question);
   // Pressed at once: x = (f0 sin(omega t) - f0 (omega/s) sin(s t)) / (1 - (1+nu) omega^2), s^2 = 1/(1+nu).
   const Quad m = Quad(3) / 2, s = 1 / sqrtq(m), w = Quad(1) / 2, c = 1 / (1 - m * w * w);
@@ -184,13 +167,9 @@ TEST_CASE("a complete chattering ends where the sum of its bounces does") {
   // A force of frequency 1e-9 is constant as long as this lasts, but for 1e-18 of it, and the primary mass
   // does not answer it if it is 1e9 times as heavy: the relative acceleration is -1 at first and falls with
   // x.
-  Question question;
-  question.walls = Walls::rigid;
-  Scene& scene = question.scene;
-  scene.x0 = -1, scene.damper().y0 = 0, scene.damper().w0 = 1e-6, scene.damper().mass_ratio = 1e-9,
-  scene.damper().restitution = 0.5;
-  scene.until_time = 1;
-  const Answer answer = answer_to(question);
+  const Answer answer =
+      answer_to({.scene = {.x0 = -1, .until_time = 1, .dampers = {damper(1e-9, 0.5, 1, 0, 1e-6)}},
+                 .walls = Walls::rigid});
   REQUIRE(!answer.contacts.empty());
   // x'' = 1 - t^2/2 - ..: the first flight 2 w0, then each half as long: 4 w0 in all, to 1e-12 of itself.
   CHECK(double(magnitude(answer.contacts[0].begin / Quad(4e-6L) - 1)) < 1e-9);
@@ -214,37 +193,22 @@ TEST_CASE("a chattering whose bounces become slower than rounding is complete") 
 }
 
 TEST_CASE("the energy balance closes in decays with impacts, contacts, force and damping") {
-  for (const Walls walls : {Walls::compliant, Walls::rigid}) {
-    for (const double zeta : {0.0, 0.3, 3.0}) {
+  for (const Walls walls : {Walls::compliant, Walls::rigid})
+    for (const double zeta : {0.0, 0.3, 3.0})
       for (const double force : {0.0, 1.0}) {
-        Question question;
-        question.walls = walls;
-        question.scene.damping_ratio = zeta;
-        question.scene.force_amplitude = force;
-        question.scene.force_frequency = 0.7;
-        question.scene.until_time = 12;
-        question.most_steps = 4000;
-        const Answer answer = answer_to(question);
-        CAPTURE(zeta);
-        CAPTURE(force);
+        const Scene scene{
+            .damping_ratio = zeta, .force_amplitude = force, .force_frequency = 0.7, .until_time = 12};
+        const Answer answer = answer_to({.scene = scene, .walls = walls, .most_steps = 4000});
+        INFO("zeta ", zeta, ", force ", force);
         CHECK(answer.stop == Stop::time);
         CHECK(answer.impacts.size() >= 2);
         CHECK(double(magnitude(answer.residual()) / answer.initial.total()) < 1e-28);
       }
-    }
-  }
 }
 
 TEST_CASE("the mirrored scene has the mirrored run") {
-  Question question, mirrored;
-  question.scene.damper().y0 = 0.25;
-  question.scene.damper().w0 = 0.5;
-  question.scene.force_amplitude = 1;
-  question.scene.until_time = 15;
-  mirrored = question;
-  mirrored.scene.x0 *= -1, mirrored.scene.damper().w0 *= -1, mirrored.scene.force_amplitude *= -1;
-  mirrored.scene.damper().y0 = 0.75;
-  const Answer a = answer_to(question), b = answer_to(mirrored);
+  const Scene scene{.force_amplitude = 1, .until_time = 15, .dampers = {{.y0 = 0.25, .w0 = 0.5}}};
+  const Answer a = answer_to({.scene = scene}), b = answer_to({.scene = mirrored(scene)});
   REQUIRE(a.impacts.size() == b.impacts.size());
   for (std::size_t i = 0; i < a.impacts.size(); ++i) {
     CHECK(off(a.impacts[i].time, b.impacts[i].time) < 1e-26);  // roundings, grown
@@ -288,9 +252,9 @@ TEST_CASE("one damper with two impacts in each period moves as the closed form s
   // The scene begins where the force is zero, in that half period.
   double start = std::fmod(-tau / omega, theta);
   if (start < 0) start += theta;
-  Scene scene;
-  scene.damping_ratio = 0, scene.force_frequency = omega;
-  scene.force_amplitude = size * (1 - omega * omega) * (std::cos(omega * start + tau) > 0 ? 1 : -1);
+  Scene scene{.damping_ratio = 0,
+              .force_amplitude = size * (1 - omega * omega) * (std::cos(omega * start + tau) > 0 ? 1 : -1),
+              .force_frequency = omega};
   const auto x = [&](double t) {
     return a * std::cos(t) + b * std::sin(t) + size * std::sin(omega * t + tau);
   };
@@ -311,9 +275,9 @@ TEST_CASE("one damper with two impacts in each period moves as the closed form s
 }
 
 TEST_CASE("masses that meet a wall at one instant share their impulses") {
-  Scene scene;
-  scene.x0 = 0, scene.until_time = 0.1;
-  scene.dampers = {damper(0.5, 1, 1, 0, -1), damper(0.5, 0.5, 1, 0, -1), damper(0.5, 0.5, 1, 0, 0)};
+  Scene scene{.x0 = 0,
+              .until_time = 0.1,
+              .dampers = {damper(0.5, 1, 1, 0, -1), damper(0.5, 0.5, 1, 0, -1), damper(0.5, 0.5, 1, 0, 0)}};
   // J = -(0.5 2 + 0.5 1.5)/(1 + 0.5 + 0.5): the third rests there and is left behind.
   Answer answer = answer_for(scene);
   REQUIRE(answer.impacts.size() == 2);
@@ -355,9 +319,8 @@ TEST_CASE("equal dampers are one of their masses together, sticking included") {
 
 TEST_CASE("those that stick move with the primary mass until x'' is zero") {
   // At rest on the right wall, x0 > 0: x = cos(t / sqrt(1.5)) until x = 0, then all fly with x' as it is.
-  Scene scene;
-  scene.x0 = 1, scene.until_time = 3;
-  scene.dampers = {damper(0.25, 0.5, 10, 10, 0), damper(0.25, 0, 20, 20, 0)};
+  const Scene scene{
+      .x0 = 1, .until_time = 3, .dampers = {damper(0.25, 0.5, 10, 10, 0), damper(0.25, 0, 20, 20, 0)}};
   const Answer answer = answer_for(scene);
   REQUIRE(answer.contacts.size() == 2);
   const double release = std::numbers::pi / 2 * std::sqrt(1.5);
@@ -416,10 +379,13 @@ TEST_CASE("energy is kept, and no order of the dampers changes anything") {
 TEST_CASE("the oracle finds what a plain integration does") {
   for (const Walls walls : {Walls::rigid, Walls::compliant}) {
     const bool rigid = walls == Walls::rigid;
-    Scene scene;
-    scene.damping_ratio = 0.05, scene.x0 = -2, scene.v0 = 0.3, scene.until_time = 10.9;
-    scene.force_amplitude = 0.5, scene.force_frequency = 0.7;
-    scene.dampers = {damper(0.3, 0.7, 1, rigid ? 0 : -0.01, rigid ? 0 : 0.1, 300)};
+    const Scene scene{.damping_ratio = 0.05,
+                      .x0 = -2,
+                      .v0 = 0.3,
+                      .force_amplitude = 0.5,
+                      .force_frequency = 0.7,
+                      .until_time = 10.9,
+                      .dampers = {damper(0.3, 0.7, 1, rigid ? 0 : -0.01, rigid ? 0 : 0.1, 300)}};
     reference::same_until_its_time(run_of_oracle(scene, walls),
                                    reference::PlainIntegration(scene, rigid, sample_count).run(), 1e-7);
   }

@@ -11,9 +11,9 @@
 #include "forced_scene.hpp"
 #include "impact_damper/orbits/branches.hpp"
 #include "impact_damper/simulate.hpp"
-#include "list_of_one.hpp"
 #include "reference.hpp"
 #include "same_run.hpp"
+#include "shared_scenes.hpp"
 
 using namespace impact_damper;
 using reference::farthest;

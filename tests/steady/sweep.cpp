@@ -10,7 +10,7 @@
 
 #include "impact_damper/responses/response_file.hpp"
 #include "impact_damper/simulate.hpp"
-#include "list_of_one.hpp"
+#include "shared_scenes.hpp"
 
 namespace {
 
