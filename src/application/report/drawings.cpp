@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "application/reproduction/series_blocks.hpp"
+#include "application/reproduction/series.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/scene_file.hpp"

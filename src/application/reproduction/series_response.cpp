@@ -4,8 +4,8 @@
 #include <limits>
 #include <map>
 
-#include "application/reproduction/curve.hpp"
-#include "application/reproduction/series_blocks.hpp"
+#include "application/reproduction/measures_parts.hpp"
+#include "application/reproduction/series.hpp"
 #include "impact_damper/analysis/design.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/math/elementary.hpp"
