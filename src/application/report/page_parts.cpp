@@ -310,13 +310,12 @@ std::string energy_html(const Findings& findings) {
   row("Left at the end", balance.final.total());
 
   std::string text = "There are no impacts. ";
-  if (const auto count = std::ssize(findings.run.impacts->time); count > 0) {
-    text = count_html(count) + (count == 1 ? " impact was counted" : " impacts were counted");
-    text += impacts > 0 && brought > 0
+  if (!findings.run.impacts->time.empty())
+    text = impacts_counted(findings) +
+           (impacts > 0 && brought > 0
                 ? ", which took " + percent_html(impacts / brought) + " of the energy at the beginning" +
                       (findings.forced() ? " and of what the force brought. " : ". ")
-                : ". ";
-  }
+                : ". ");
   return table_html(table) +
          paragraph_html(text + (balance.residual == 0
                                     ? "All of it adds up, to the last digit."

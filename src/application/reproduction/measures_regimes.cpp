@@ -38,6 +38,15 @@ std::size_t row_of(const Run& run, double time) {
                                   crossing.begin());
 }
 
+// Returns the indices of the impacts in each half cycle.
+std::vector<std::vector<std::size_t>> impacts_by_row(const Run& run) {
+  std::vector<std::vector<std::size_t>> rows(half_cycles_of(run).amplitude.size());
+  const std::vector<double>& time = impacts_of(run).time;
+  for (std::size_t i = 0; i < time.size(); ++i)
+    if (const std::size_t row = row_of(run, time[i]); row < rows.size()) rows[row].push_back(i);
+  return rows;
+}
+
 double mean_impacts(const Run& run, const Rows& rows) {
   double sum = 0;
   for (std::size_t row = rows.first; row < rows.last; ++row)
@@ -223,13 +232,11 @@ std::vector<Measure> regime_measures() {
        "mean difference in phase between successive impacts, degrees, if each half cycle has one",
        [](const Asked& asked, const Run& run) {
          const Rows rows = rows_below(asked, run);
-         const Impacts& impacts = impacts_of(run);
+         const auto by_row = impacts_by_row(run);
          std::vector<double> phase;
-         for (std::size_t i = 0; i < impacts.time.size(); ++i) {
-           const std::size_t row = row_of(run, impacts.time[i]);
-           if (row >= rows.first && row < rows.last && impacts.phase_deg[i])
-             phase.push_back(*impacts.phase_deg[i]);
-         }
+         for (std::size_t row = rows.first; row < rows.last; ++row)
+           for (const std::size_t i : by_row[row])
+             if (const auto degrees = run.impacts->phase_deg[i]) phase.push_back(*degrees);
          if (phase.size() != rows.last - rows.first || phase.size() < 2) return std::nan("");
          double sum = 0;
          for (std::size_t i = 1; i < phase.size(); ++i) sum += std::abs(phase[i] - phase[i - 1]);
@@ -252,17 +259,13 @@ std::vector<Measure> regime_measures() {
       {"bounce_down_degrees_slope",
        "growth of the part between first and last impact of a half cycle with amplitude, degrees",
        [](const Asked& asked, const Run& run) {
-         const Impacts& impacts = impacts_of(run);
+         const auto by_row = impacts_by_row(run);
          Curve curve;
          for (const std::size_t row : rows_between(asked, run)) {
-           std::optional<double> first, last;
-           for (std::size_t i = 0; i < impacts.time.size(); ++i) {
-             if (row_of(run, impacts.time[i]) != row || !impacts.phase_deg[i]) continue;
-             if (!first) first = impacts.phase_deg[i];
-             last = impacts.phase_deg[i];
-           }
-           if (!first) continue;
-           curve.add(run.half_cycles->amplitude[row], *last - *first);
+           std::vector<double> phase;
+           for (const std::size_t i : by_row[row])
+             if (const auto degrees = run.impacts->phase_deg[i]) phase.push_back(*degrees);
+           if (!phase.empty()) curve.add(run.half_cycles->amplitude[row], phase.back() - phase.front());
          }
          return slope(curve);
        },
@@ -306,19 +309,15 @@ std::vector<Measure> regime_measures() {
        numbers(), scenes(1, 8)},
       {"impact_speed_slope", "d ln (w / A^power) / d ln A, w the fastest impact of a half cycle",
        [](const Asked& asked, const Run& run) {
-         const Impacts& impacts = impacts_of(run);
-         const auto& amplitude = half_cycles_of(run).amplitude;
-         std::vector<double> fastest(amplitude.size(), 0);
-         for (std::size_t i = 0; i < impacts.time.size(); ++i) {
-           const std::size_t row = row_of(run, impacts.time[i]);
-           if (row < fastest.size())
-             fastest[row] = std::max(fastest[row], std::abs(impacts.relative_velocity[i]));
-         }
+         const auto by_row = impacts_by_row(run);
          Curve curve;
          for (const std::size_t row : rows_between(asked, run)) {
-           if (!(fastest[row] > 0)) continue;
-           curve.add(amplitude[row],
-                     fastest[row] * exponential(-asked.number("power") * logarithm(amplitude[row])));
+           double fastest = 0;
+           for (const std::size_t i : by_row[row])
+             fastest = std::max(fastest, std::abs(run.impacts->relative_velocity[i]));
+           const double amplitude = run.half_cycles->amplitude[row];
+           if (fastest > 0)
+             curve.add(amplitude, fastest * exponential(-asked.number("power") * logarithm(amplitude)));
          }
          return log_slope(curve);
        },
