@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "application/reproduction/measures.hpp"
-#include "application/reproduction/words.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "rejection.hpp"
 

@@ -35,6 +35,14 @@ double value(const std::string& name, std::map<std::string, double> numbers) {
   return spread.median;
 }
 
+// The mean over the bins of the analysis.
+double spread_percent(const std::vector<Curve>& curves, double from, double to) {
+  return mean(spreads_percent(curves, from, to, AnalysisOptions{}.bins));
+}
+double worst_spread_percent(const std::vector<Curve>& curves, double from, double to) {
+  return most(spreads_percent(curves, from, to, AnalysisOptions{}.bins));
+}
+
 Curve power(double factor, double exponent, int points = 200) {
   Curve curve;
   for (int i = 0; i < points; ++i) {

@@ -37,76 +37,63 @@ std::vector<const Figure*> chosen(const Catalogue& catalogue, Arguments& argumen
   return figures;
 }
 
-// Calls `read` and reports problems of a file under the figure's name.
-template <class Read>
-void for_figure(const Figure& figure, Read read) {
-  try {
-    read();
-  } catch (const InputError& error) {
-    std::vector<std::string> problems = error.problems();
-    for (std::string& problem : problems) problem = filled("figure {}: {}", figure.number, problem);
-    throw InputError(problems);
-  } catch (const IoError& error) {
-    throw IoError(filled("figure {}: {}", figure.number, error.what()));
+// What figures draw, as far as it was read.
+struct Inputs {
+  const SceneRuns& folders;
+  const fs::path catalogue_file;
+  const Catalogue& catalogue;
+  const Threads threads;
+  FigureRuns runs{}, further{};
+  FigureResponses responses{};
+  FigureSweeps sweeps{};
+
+  // Reads what the figure draws: runs with the members of the ensembles that it shows, responses, and the
+  // sweep of the plan beside the catalogue. The runs of scenes must be of one engine, whatever figure they
+  // were read for. Reports problems of a file under the figure's name.
+  void read_for(const Figure& figure) {
+    try {
+      read(figure);
+    } catch (const InputError& error) {
+      std::vector<std::string> problems = error.problems();
+      for (std::string& problem : problems) problem = filled("figure {}: {}", figure.number, problem);
+      throw InputError(problems);
+    } catch (const IoError& error) {
+      throw IoError(filled("figure {}: {}", figure.number, error.what()));
+    }
   }
-}
 
-// Loads the further runs that a figure draws, with their ensembles.
-void load_further(const Figure& figure, const SceneRuns& folders, const Catalogue& catalogue,
-                  const Threads& threads, FigureRuns& runs) {
-  for (const std::string& name : runs_of(figure))
-    for_figure(figure, [&] {
-      const fs::path file = folders.file_of(name);
-      FigureRun source{file, folders.read(*find_run(catalogue.runs, name))};
-      source.others = read_members(source.run, file, {.members = catalogue.members, .threads = threads});
-      runs[name] = std::move(source);
-    });
-}
-
-// Loads a figure's runs, and the members of the ensembles that it shows. All must be of one engine, whatever
-// figure they were read for.
-void load(const Figure& figure, const SceneRuns& folders, const Threads& threads, FigureRuns& runs) {
-  for (const std::string& scene : scenes_of(figure)) {
-    const fs::path file = folders.file_of(scene);
-    for_figure(figure, [&] {
+ private:
+  void read(const Figure& figure) {
+    for (const std::string& scene : scenes_of(figure)) {
       if (!runs.contains(scene)) {
-        const FigureRun source{file, folders.read(scene)};
+        const FigureRun source{folders.file_of(scene), folders.read(scene)};
         if (!runs.empty()) {
           const FigureRun& first = runs.begin()->second;
-          require_same_engine(source.run, file, first.run, first.file);
+          require_same_engine(source.run, source.file, first.run, first.file);
         }
         runs[scene] = source;
       }
-      FigureRun& source = runs.at(scene);
-      EnsembleOptions ensemble;
-      ensemble.members = members_shown(figure, scene);
-      ensemble.threads = threads;
-      if (ensemble.members > std::int64_t(source.others.size()) + 1)
-        source.others = read_members(source.run, file, ensemble);
-    });
-  }
-}
-
-// Loads a figure's responses.
-void load(const Figure& figure, const SceneRuns& folders, const Catalogue& catalogue,
-          FigureResponses& responses) {
-  for (const std::string& name : figure.responses)
-    for_figure(figure, [&] {
+      read_others(runs[scene], members_shown(figure, scene));
+    }
+    for (const std::string& name : runs_of(figure)) {
+      if (!further.contains(name))
+        further[name] = {folders.file_of(name), folders.read(*find_run(catalogue.runs, name))};
+      read_others(further[name], catalogue.members);
+    }
+    for (const std::string& name : figure.responses)
       if (!responses.contains(name))
         responses[name] = {folders.file_of(name), folders.read(*find_response(catalogue.responses, name))};
-    });
-}
+    if (!figure.plan.empty())
+      sweeps[figure.plan] =
+          read_sweep_table(folders.runs / (sweep_stem(figure) + ".csv"),
+                           read_plan(catalogue_file.parent_path() / figure.plan, find_named_file));
+  }
 
-// Loads a figure's sweep, which must be of the plan beside the catalogue.
-void load(const Figure& figure, const SceneRuns& folders, const fs::path& catalogue_file,
-          FigureSweeps& sweeps) {
-  if (figure.plan.empty()) return;
-  for_figure(figure, [&] {
-    sweeps[figure.plan] =
-        read_sweep_table(folders.runs / (sweep_stem(figure) + ".csv"),
-                         read_plan(catalogue_file.parent_path() / figure.plan, find_named_file));
-  });
-}
+  void read_others(FigureRun& source, std::int64_t members) const {
+    if (members > std::int64_t(source.others.size()) + 1)
+      source.others = read_members(source.run, source.file, {.members = members, .threads = threads});
+  }
+};
 
 int make_tables(Arguments& arguments) {
   const fs::path runs_folder = arguments.file("--runs").value_or("");
@@ -146,21 +133,17 @@ int make_tables(Arguments& arguments) {
     for (const Figure* figure : figures) require_writable(place_of(*figure));
   }
 
-  FigureRuns runs, further;
-  FigureResponses responses;
-  FigureSweeps sweeps;
+  Inputs read{folders, catalogue_file, catalogue, threads};
   std::size_t made = 0;
   for (const Figure* figure : figures) {
     if (!on_standard_output) {
       if_interrupted_say(filled("{} of {} tables are left; {}", figures.size() - made++, figures.size(),
                                 left_as_it_was(place_of(*figure))));
     }
-    load(*figure, folders, threads, runs);
-    load_further(*figure, folders, catalogue, threads, further);
-    load(*figure, folders, catalogue, responses);
-    load(*figure, folders, catalogue_file, sweeps);
+    read.read_for(*figure);
     const bool draws_further = !runs_of(*figure).empty();
-    const Table table = figure_table(*figure, draws_further ? further : runs, responses, sweeps);
+    const Table table =
+        figure_table(*figure, draws_further ? read.further : read.runs, read.responses, read.sweeps);
     const std::string text = format == Format::csv ? to_csv(table) : to_text(table);
     write_output(on_standard_output ? output : place_of(*figure).string(), text);
   }

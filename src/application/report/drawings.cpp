@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "application/reproduction/series_blocks.hpp"
+#include "application/reproduction/series.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/scene_file.hpp"
@@ -133,41 +133,30 @@ std::vector<double> drawn_frequencies(const ForcedResponse& response) {
   return frequencies;
 }
 
-// Returns the motions of one way that are periodic, or those that are not.
-TableBlock arrived_block(const ForcedResponse& response, ArrivedMotion ResponsePoint::*way, bool is_periodic,
-                         const std::string& name, const std::string& legend) {
-  TableBlock block{
-      .name = name,
-      .columns = {{"frequency", "of the force, in units of Omega_n"},
-                  {legend,
-                   is_periodic ? "largest |x| of the periodic motion, in units of epsilon"
-                               : "largest |x| of a motion that is not periodic, in units of epsilon",
-                   {}}}};
-  for (const ResponsePoint& point : response.points) {
-    const ArrivedMotion& motion = point.*way;
-    if (motion.is_known() && motion.is_periodic() == is_periodic)
-      block.add_row({point.frequency, motion.amplitude()});
-  }
-  return block;
-}
-
 std::optional<Drawing> response(const Findings& findings) {
   const ForcedResponse& all = findings.response;
   if (all.points.size() < least_points || !all.largest()) return std::nullopt;
   const Scene& scene = findings.subject.scene;
   Drawing drawing = drawing_of(findings, "response", "Amplitude over frequency");
+  const auto block_of = [](const std::string& name, const std::string& legend, const char* what) {
+    return TableBlock{.name = name,
+                      .columns = {{"frequency", "of the force, in units of Omega_n"}, {legend, what}}};
+  };
   const auto add = [&](ArrivedMotion ResponsePoint::*way, const std::string& name,
                        const std::string& legend) {
-    for (const bool is_periodic : {true, false})
-      drawing.table.add_if_any(arrived_block(all, way, is_periodic, is_periodic ? name : name + "-open",
-                                             is_periodic ? legend : legend + ", not periodic"));
+    TableBlock periodic = block_of(name, legend, "largest |x| of the periodic motion, in units of epsilon"),
+               open = block_of(name + "-open", legend + ", not periodic",
+                               "largest |x| of a motion that is not periodic, in units of epsilon");
+    for (const ResponsePoint& point : all.points)
+      if (const ArrivedMotion& motion = point.*way; motion.is_known())
+        (motion.is_periodic() ? periodic : open).add_row({point.frequency, motion.amplitude()});
+    drawing.table.add_if_any(std::move(periodic));
+    drawing.table.add_if_any(std::move(open));
   };
   add(&ResponsePoint::rising, "rising", "frequency rising");
   add(&ResponsePoint::falling, "falling", "frequency falling");
   const auto linear = [&](const std::string& name, const std::string& legend, double mass) {
-    TableBlock block{.name = name,
-                     .columns = {{"frequency", "of the force, in units of Omega_n"},
-                                 {legend, "amplitude, in units of epsilon"}}};
+    TableBlock block = block_of(name, legend, "amplitude, in units of epsilon");
     for (const double frequency : drawn_frequencies(all)) {
       const double amplitude = linear_response(scene.force_amplitude, mass, scene.damping_ratio, frequency);
       if (std::isfinite(amplitude)) block.add_row({frequency, amplitude});

@@ -24,13 +24,11 @@ std::optional<std::size_t> first_row(const HalfCycles& rows) {
 template <class Measure>
 std::optional<Spread> over_all(const Findings& findings, Measure measure) {
   std::vector<double> values;
-  const auto add = [&](const Run& run) {
-    const std::optional<double> value = measure(run);
-    if (value) values.push_back(*value);
-  };
-  add(findings.run);
-  for (const Run& other : findings.others) add(other);
-  if (values.size() != findings.others.size() + 1) return std::nullopt;
+  for (std::size_t i = 0; i <= findings.others.size(); ++i) {
+    const std::optional<double> value = measure(i == 0 ? findings.run : findings.others[i - 1]);
+    if (!value) return std::nullopt;
+    values.push_back(*value);
+  }
   return spread_of(values);
 }
 

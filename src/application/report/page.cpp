@@ -1,11 +1,17 @@
+// The frame of a report's page, and its section about the scene itself.
 #include "application/report/page.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "application/report/quantities.hpp"
 #include "impact_damper/io/provenance.hpp"
 #include "impact_damper/io/scene_file.hpp"
+#include "impact_damper/units.hpp"
 
 namespace impact_damper {
 namespace {
@@ -91,6 +97,147 @@ void put_in(std::string& page, const std::string& name, std::string_view text) {
   page.replace(at, place.size(), text);
 }
 
+// A table with a row for each number: name, in units, dimensionless. Without scales the middle column is
+// omitted.
+class SceneTable {
+ public:
+  explicit SceneTable(const Subject& subject) : scales_(subject.scales) {}
+
+  void row(const std::string& what, const std::string& symbol, double value, Dimension dimension) {
+    std::vector<std::string> cells{what};
+    if (scales_) cells.push_back(dimension == Dimension::ratio ? "" : in_units(value, dimension));
+    cells.push_back((symbol.empty() ? "" : "<i>" + symbol + "</i> = ") + number_html(value, 4));
+    table_.rows.push_back(std::move(cells));
+  }
+  // Adds a quantity that only scales, which a dimensionless scene does not have.
+  void scale(const std::string& what, const std::string& symbol, Dimension dimension) {
+    if (scales_) table_.rows.push_back({what, in_units(1, dimension), "<i>" + symbol + "</i>, a scale"});
+  }
+  std::string html(const std::string& caption) {
+    table_.caption = caption;
+    table_.heads = {"Quantity"};
+    if (scales_) table_.heads.emplace_back("In units");
+    table_.heads.emplace_back("Dimensionless");
+    return table_html(table_);
+  }
+
+ private:
+  std::string in_units(double value, Dimension dimension) const {
+    return with_unit(number_html(value * scales_->of(dimension), 4), unit_of(dimension, true));
+  }
+  std::optional<Scales> scales_;
+  HtmlTable table_;
+};
+
+std::string scene_table(const Subject& subject) {
+  const Scene& scene = subject.scene;
+  using enum Dimension;
+  const bool rigid = has_rigid_walls(subject.engine), several = !has_one_damper(scene);
+  SceneTable table(subject);
+  table.scale("Primary mass", "M", mass);
+  table.scale("Stiffness", "K", stiffness);
+  table.scale("Natural frequency, Ω/2π", "Ω", frequency);
+  table.scale(several ? "Clearance of the first damper" : "Clearance of the secondary mass", "ε", length);
+  const SceneDamper& damper = scene.damper();
+  if (!several) {
+    table.row("Secondary mass", "ν", damper.mass_ratio, mass);
+    table.row("Restitution", "e", damper.restitution, ratio);
+  }
+  table.row("Viscous damping of the primary mass", "ζ", scene.damping_ratio, damping);
+  if (!several && !rigid) table.row("Stiffness of the walls", "k", damper.wall_stiffness, stiffness);
+  table.row("Initial displacement", "x", scene.x0, length);
+  table.row("Initial velocity", "x′", scene.v0, velocity);
+  if (!several) {
+    table.row("Secondary mass, from the left wall", "y", damper.y0, length);
+    table.row("Its velocity in the cavity", "y′", damper.w0, velocity);
+  }
+  if (scene.force_amplitude != 0) {
+    table.row("Exciting force, amplitude", "f", scene.force_amplitude, force);
+    table.row("Its frequency", "ω", scene.force_frequency, frequency);
+  }
+  if (scene.until_time) table.row("Ends at this time", "t", *scene.until_time, time);
+  if (scene.until_amplitude) table.row("Ends below this amplitude", "A", *scene.until_amplitude, length);
+  return table.html(subject.scales ? "The scene, as it was given and as it is computed"
+                                   : "The scene, as it is computed");
+}
+
+// Returns the table of several dampers, in units if they are known.
+std::string dampers_table(const Subject& subject) {
+  struct Column {
+    std::string what, symbol;
+    double SceneDamper::*number;
+    Dimension dimension;
+  };
+  using enum Dimension;
+  std::vector<Column> columns{{"secondary mass", "ν", &SceneDamper::mass_ratio, mass},
+                              {"clearance", "c", &SceneDamper::clearance, length},
+                              {"restitution", "e", &SceneDamper::restitution, ratio},
+                              {"stiffness of the walls", "k", &SceneDamper::wall_stiffness, stiffness},
+                              {"place at first", "y", &SceneDamper::y0, length},
+                              {"velocity at first", "y′", &SceneDamper::w0, velocity}};
+  if (has_rigid_walls(subject.engine)) columns.erase(columns.begin() + 3);
+  const bool in_units = subject.scales.has_value();
+  HtmlTable table{.caption = in_units ? "Its dampers" : "Its dampers, dimensionless", .heads = {"Damper"}};
+  for (const Column& each : columns) {
+    const std::string unit(in_units ? unit_of(each.dimension, true) : "");
+    table.heads.push_back(each.what + ", " + (unit.empty() ? "<i>" + each.symbol + "</i>" : unit));
+  }
+  for (const SceneDamper& damper : subject.scene.dampers) {
+    std::vector<std::string>& row = table.rows.emplace_back(1, std::to_string(table.rows.size() + 1));
+    for (const Column& each : columns)
+      row.push_back(number_html(damper.*each.number * scale_of(each.dimension, subject.scales), 4));
+  }
+  return table_html(table);
+}
+
+// Describes the method of the engine, from the options of the run, which are filled in.
+struct Method {
+  bool several;
+  std::string operator()(const Exact&) const {
+    if (several)
+      return "The walls are springs with dampers, and each stretch of the motion is a closed form or, where "
+             "several walls are pushed at once, a power series that is as good: there is no time step, and "
+             "no impact is missed.";
+    return "The walls are springs with dampers, and each stretch of the motion is a closed form: there is no "
+           "time step, and no impact is missed.";
+  }
+  std::string operator()(const Restitution&) const {
+    return "The walls are rigid and impacts take no time; of infinitely many bounces the sum is taken.";
+  }
+  std::string operator()(const Cem& cem) const {
+    return "The walls are springs with dampers, and the motion is followed by central differences with a "
+           "fixed step of " +
+           number_html(cem.time_step.value_or(0)) + " in units of 1/Ω.";
+  }
+};
+
+std::string end_in_words(StopReason reason) {
+  const auto used_up = [](const std::string& what, const std::string& option) {
+    return "until the allowed " + what + " was used up (<code>--max-" + option + "</code>)";
+  };
+  switch (reason) {
+    case StopReason::time:
+      return "the time that was asked for";
+    case StopReason::amplitude:
+      return "until the amplitude was below the one asked for";
+    case StopReason::impact_budget:
+      return used_up("number of impacts", "impacts");
+    case StopReason::half_cycle_budget:
+      return used_up("number of half cycles", "half-cycles");
+    case StopReason::time_budget:
+      return used_up("time", "time");
+    case StopReason::step_budget:
+      return used_up("number of steps", "steps");
+  }
+  return "";
+}
+
+std::string engine_sentence(const Findings& findings) {
+  return "<p>" + std::visit(Method{findings.several()}, findings.run.engine) + " It was followed for " +
+         Quantities(findings.subject.scales).time(findings.run.end_time) + ", " +
+         end_in_words(findings.run.stop_reason) + ".</p>\n";
+}
+
 }  // namespace
 
 std::string page_html(const Findings& findings, const std::vector<Drawing>& drawings,
@@ -141,6 +288,54 @@ std::string page_html(const Findings& findings, const std::vector<Drawing>& draw
   put_in(page, "title", name + " – impact damper");
   put_in(page, "body", body);
   return page;
+}
+
+// Returns warnings about numbers that are valid but likely mistakes: a length in metres, a mass in grams.
+std::string warnings_html(const Findings& findings) {
+  const Scene& scene = findings.subject.scene;
+  const Quantities quantities(findings.subject.scales);
+  const double reach = std::max(std::abs(scene.x0), std::abs(scene.v0));
+  std::vector<std::string> looks;
+  for (std::string caution : cautions_of(scene, findings.subject.scales)) {
+    if (caution.starts_with("the ")) caution[0] = 'T';
+    looks.push_back(caution + (caution.ends_with('?') ? "" : "."));
+  }
+  if (quantities.in_units() && reach > 1000)
+    looks.push_back("The primary mass begins with an amplitude of about " + quantities.length(reach) +
+                    ": is the clearance given in millimetres?");
+  if (quantities.in_units() && reach > 0 && reach < 1e-3)
+    looks.push_back("The clearance is " + number_html(1 / reach) +
+                    " times as long as the first amplitude: is it given in millimetres?");
+  double softest = scene.damper().wall_stiffness;
+  for (const SceneDamper& damper : scene.dampers) softest = std::min(softest, damper.wall_stiffness);
+  if (softest < 100 && !has_rigid_walls(findings.subject.engine))
+    looks.push_back(
+        (findings.several() ? "The softest walls are only " : "The walls are only ") + number_html(softest) +
+        " times as stiff as the primary spring: an impact takes as long as a good part of a period.");
+  if (scene.damping_ratio >= 1)
+    looks.push_back("The primary mass is damped " + number_html(scene.damping_ratio) +
+                    " times critically: it creeps back and does not swing.");
+  if (looks.empty()) return "";
+  std::string html = "<p>Worth a second look:</p>\n<ul>\n";
+  for (const std::string& look : looks) html += "<li>" + look + "</li>\n";
+  return html + "</ul>\n";
+}
+
+std::string scene_html(const Findings& findings) {
+  const std::string scales =
+      findings.subject.scales
+          ? "<p>Numbers are given in units first and, in brackets, dimensionless: lengths in units of the "
+            "clearance ε" +
+                std::string(findings.several() ? " of the first damper" : "") +
+                ", times in periods 2π/Ω of the primary mass on its spring, velocities in units of εΩ, "
+                "energies in units of Kε².</p>\n"
+          : "<p>Lengths are in units of " +
+                std::string(findings.several() ? "one length ε" : "the clearance ε of the secondary mass") +
+                ", times <i>t</i> in units of 1/Ω, Ω = √(K/M) being the primary mass's natural frequency, "
+                "velocities in units of εΩ, energies in units of Kε². A scene file may give masses in "
+                "kilograms and lengths in millimetres instead; this page then gives both.</p>\n";
+  return scene_table(findings.subject) + (findings.several() ? dampers_table(findings.subject) : "") +
+         scales + engine_sentence(findings);
 }
 
 }  // namespace impact_damper

@@ -166,46 +166,35 @@ void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& cat
                                                  : "at least one curve") +
                               " with \"table\": " + in_quotes(name_of(figure.table)) + ", got " +
                               std::to_string(count));
-  if (figure.table != TableKind::damper_sets && (count > 1) != item.has("varied")) {
+  const bool sets = figure.table == TableKind::damper_sets;
+  if (!sets && (count > 1) != item.has("varied")) {
     item.reject("varied", "must be given if, and only if, there are several curves, got " +
                               std::string(count > 1 ? "none" : "it") + " for " + std::to_string(count));
   }
-  if (figure.table == TableKind::damper_sets) {
-    for (std::size_t i = 0; i < count; ++i) {
-      for (const std::string& name : {figure.curves[i].run, figure.curves[i].alone}) {
-        const CatalogueRun* const run = find_run(catalogue.runs, name);
-        if (!run && !name.empty())
-          item.reject("curves", i, "must draw runs of this catalogue, got the string " + in_quotes(name));
-        if (const std::string missing = run ? missing_record(figure.table, run->record) : "";
-            !missing.empty())
-          item.reject(
-              "curves", i,
-              std::string("needs \"").append(missing).append("\" in the record of run ").append(name));
-      }
-    }
-    return;
-  }
   for (std::size_t i = 0; i < count; ++i) {
-    const std::string& name = figure.curves[i].scene;
-    const CatalogueScene* scene = find_scene(catalogue, name);
-    if (!scene) {
-      if (!name.empty())
-        item.reject("curves", i, "must draw a scene of this catalogue, got the string " + in_quotes(name));
-      continue;
-    }
-    if (const std::string missing = missing_record(figure.table, scene->record); !missing.empty())
-      item.reject("curves", i,
-                  std::string("needs \"")
-                      .append(missing)
-                      .append("\" in the scene's record, which ")
-                      .append(name)
-                      .append(" lacks"));
-    const auto opens_window = [&](const AmplitudeWindow& window) {
-      return window.amplitude == figure.window;
-    };
-    if (figure.window && std::ranges::none_of(scene->record.history_below, opens_window)) {
-      item.reject("window", "must be the amplitude of a history window of scene " + name + ", got " +
-                                number_text(*figure.window));
+    const FigureCurve& curve = figure.curves[i];
+    for (const std::string& name : {sets ? curve.run : curve.scene, curve.alone}) {
+      if (name.empty()) continue;
+      const CatalogueScene* const scene = find_scene(catalogue, name);
+      const CatalogueRun* const run = find_run(catalogue.runs, name);
+      if (sets ? !run : !scene) {
+        item.reject("curves", i,
+                    "must draw " + std::string(sets ? "runs" : "a scene") +
+                        " of this catalogue, got the string " + in_quotes(name));
+        continue;
+      }
+      const Record& record = sets ? run->record : scene->record;
+      if (const std::string missing = missing_record(figure.table, record); !missing.empty())
+        item.reject("curves", i,
+                    "needs \"" + missing +
+                        (sets ? "\" in the record of run " + name
+                              : "\" in the scene's record, which " + name + " lacks"));
+      const auto opens_window = [&](const AmplitudeWindow& window) {
+        return window.amplitude == figure.window;
+      };
+      if (figure.window && std::ranges::none_of(record.history_below, opens_window))
+        item.reject("window", "must be the amplitude of a history window of scene " + name + ", got " +
+                                  number_text(*figure.window));
     }
   }
 }
@@ -296,11 +285,8 @@ std::vector<Axis> read_axes(ObjectReader& item, std::size_t count) {
 void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<SceneState>& starts,
                 SweepResponse& asked) {
   double nudge = 0;
-  if (rule) {
-    describe(JsonFields(*rule, true), asked.rule);
-    if (rule->optional("nudge", nudge, nudges) && nudge > 0 && starts.empty())
-      rule->reject("nudge", "must come with further starts");
-  }
+  if (rule && rule->optional("nudge", nudge, nudges) && nudge > 0 && starts.empty())
+    rule->reject("nudge", "must come with further starts");
   asked.axis = read_axes(item, 1)[0];
   if (is_initial_value(asked.axis.number))
     item.reject("vary", "must not vary an initial condition: a sweep goes on from the motion before");
@@ -308,9 +294,8 @@ void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<SceneS
   all.insert(all.end(), starts.begin(), starts.end());
   for (const SweepStart& start : nudged(all, nudge)) asked.sweeps.push_back({start, {}, {}});
 }
-void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<SceneState>& starts,
+void read_asked(ObjectReader& item, ObjectReader*, const std::vector<SceneState>& starts,
                 BasinResponse& asked) {
-  if (rule) describe(JsonFields(*rule, true), asked.rule);
   const std::vector<Axis> axes = read_axes(item, 2);
   asked.first = axes[0];
   asked.second = axes[1];
@@ -320,9 +305,8 @@ void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<SceneS
                             std::to_string(asked.first.count * asked.second.count));
   if (!starts.empty()) item.reject("start", "must not be given for a basin");
 }
-void read_asked(ObjectReader& item, ObjectReader* rule, const std::vector<SceneState>& starts,
+void read_asked(ObjectReader& item, ObjectReader*, const std::vector<SceneState>& starts,
                 OrbitsResponse& asked) {
-  if (rule) describe(JsonFields(*rule, true), asked.rule);
   std::vector<ObjectReader> entries = item.required_objects("vary", 2);
   if (entries.size() != 1 && item.has("vary"))
     item.reject("vary", "must be one number, got " + std::to_string(entries.size()));
@@ -351,8 +335,10 @@ CatalogueResponse read_response_entry(ObjectReader& item, const Catalogue& catal
     describe(JsonFields(start), starts.emplace_back(), Scene{});
   std::visit(
       [&](auto& asked) {
-        if constexpr (!std::is_same_v<decltype(asked), LyapunovResponse&>)
+        if constexpr (!std::is_same_v<decltype(asked), LyapunovResponse&>) {
+          if (rule) describe(JsonFields(*rule, true), asked.rule);
           read_asked(item, rule ? &*rule : nullptr, starts, asked);
+        }
         if (!engine) return;
         if (const std::optional<Engine> read = read_engine(*engine)) asked.engine = *read;
         if (std::holds_alternative<Cem>(asked.engine))

@@ -2,17 +2,93 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 #include <stdexcept>
 
 #include "application/reproduction/measures.hpp"
-#include "application/reproduction/words.hpp"
 #include "impact_damper/base/number_text.hpp"
+#include "impact_damper/base/text.hpp"
 #include "impact_damper/engine.hpp"
 #include "impact_damper/io/json_reader.hpp"
 
 namespace impact_damper {
 namespace {
+
+// The fields of a template, each with the text before it, and the text after the last one, which begins with
+// a brace if that does not close.
+struct Field {
+  std::string_view before;
+  std::string name, form;
+};
+struct Template {
+  std::vector<Field> fields;
+  std::string_view rest;
+};
+Template template_of(std::string_view words) {
+  Template parts;
+  for (;;) {
+    const std::size_t open = words.find('{'), close = words.find('}', open);
+    if (open == std::string_view::npos || close == std::string_view::npos) break;
+    const std::string_view inner = words.substr(open + 1, close - open - 1);
+    const std::size_t bar = std::min(inner.find('|'), inner.size());
+    parts.fields.push_back({words.substr(0, open), std::string(inner.substr(0, bar)),
+                            std::string(inner.substr(std::min(bar + 1, inner.size())))});
+    words.remove_prefix(close + 1);
+  }
+  parts.rest = words;
+  return parts;
+}
+
+// Returns the N of "of N"; absent for another form.
+std::optional<std::int64_t> count_of(const std::string& form) {
+  if (!form.starts_with("of ")) return std::nullopt;
+  const auto count = parse_integer(std::string_view(form).substr(3));
+  return count && *count > 0 ? count : std::nullopt;
+}
+
+std::string bracketed(const std::string& median, const std::string& low, const std::string& high,
+                      const std::string& unit) {
+  if (low == median && high == median) return median + unit;
+  return median + unit + " (" + low + " to " + high + unit + ")";
+}
+
+// Format of a field's number: its factor, significant digits and unit.
+struct Written {
+  double factor = 1;
+  int digits = 4;
+  std::string unit;
+};
+Written written_as(const std::string& form) {
+  if (form == "%") return {100, 3, " %"};
+  if (form == "percent") return {1, 4, " %"};
+  if (form == "degrees") return {1, 4, " degrees"};
+  return {};
+}
+
+// Returns a count as text: the three numbers of the spread are rounded to whole ones.
+std::string counted(const Spread& spread, std::optional<std::int64_t> of) {
+  if (!std::isfinite(spread.median)) return "none";
+  const auto text = [&](double value) {
+    const auto whole = static_cast<std::int64_t>(std::llround(of ? value * static_cast<double>(*of) : value));
+    if (!of) return whole == 0 ? std::string("no") : std::to_string(whole);
+    if (whole == *of) return "all " + std::to_string(whole);
+    return (whole == 0 ? "none" : std::to_string(whole)) + " of " + std::to_string(*of);
+  };
+  return bracketed(text(spread.median), text(spread.low), text(spread.high), "");
+}
+
+std::string field_text(const std::string& form, const Spread& spread) {
+  if (form == "count") return counted(spread, std::nullopt);
+  if (const auto count = count_of(form)) return counted(spread, count);
+  if (!std::isfinite(spread.median)) return "none";
+  const Written how = written_as(form);
+  const auto text = [&](double value) {
+    return std::isfinite(value) ? rounded_text(how.factor * value + 0.0, how.digits)  // no -0
+                                : std::string("none");
+  };
+  return bracketed(text(spread.median), text(spread.low), text(spread.high), how.unit);
+}
 
 constexpr std::optional<double> none = std::nullopt;
 
@@ -217,19 +293,19 @@ ClaimsFile read_document(JsonDocument document) {
 }  // namespace
 
 const std::vector<PrintedKind>& printed_kinds() {
+  constexpr Interval number{};
+  constexpr std::string_view bound =
+      "A bound as printed: half a unit of its last digit, at most a tenth of the number.";
   static const std::vector<PrintedKind> table{
-      {"number", 1, {}, "A number as printed: half a unit of its last digit, at most a tenth of the number."},
-      {"approximate",
-       1,
-       {},
-       "Approximately a number: a unit of its last digit, at most a tenth of the number."},
-      {"range", 2, {}, "A range: at each end a unit of its last digit, at most a tenth of the number."},
-      {"at_least",
-       1,
-       {},
-       "A bound as printed: half a unit of its last digit, at most a tenth of the number."},
-      {"at_most", 1, {}, "A bound as printed: half a unit of its last digit, at most a tenth of the number."},
-      {"count", 1, {}, "A count: nothing to round."},
+      {"number", 1, number,
+       "A number as printed: half a unit of its last digit, at most a tenth of the number.", 0.5},
+      {"approximate", 1, number,
+       "Approximately a number: a unit of its last digit, at most a tenth of the number.", 1},
+      {"range", 2, number, "A range: at each end a unit of its last digit, at most a tenth of the number.",
+       1},
+      {"at_least", 1, number, bound, 0.5},
+      {"at_most", 1, number, bound, 0.5},
+      {"count", 1, number, "A count: nothing to round."},
       {"all", 0, {1, 1}, "Every one, so a share of 1."},
       {"mostly", 0, {0.5, 1}, "More often than not, so a share of a half at least."},
       {"some", 0, {0.05, 0.95}, "Some but not all: a share of 5 to 95 percent."},
@@ -276,18 +352,14 @@ Allowed allowed_by(const PrintedKind& kind, const std::vector<std::string>& digi
   const double first = value_of(digits.front()), last = value_of(digits.back());
   if (!(first <= last)) throw std::invalid_argument("must ascend");
   allowed.printed = {first, last};
-  if (kind.name == "number") {
-    allowed.below = allowed.above = tolerance_of(digits[0], 0.5);
-  } else if (kind.name == "approximate" || kind.name == "range") {
-    allowed.below = tolerance_of(digits.front(), 1);
-    allowed.above = tolerance_of(digits.back(), 1);
-  } else if (kind.name == "at_least") {
+  if (kind.name == "at_least")
     allowed.printed.most = none;
-    allowed.below = tolerance_of(digits[0], 0.5);
-  } else if (kind.name == "at_most") {
+  else
+    allowed.above = tolerance_of(digits.back(), kind.units);
+  if (kind.name == "at_most")
     allowed.printed.least = none;
-    allowed.above = tolerance_of(digits[0], 0.5);
-  }
+  else
+    allowed.below = tolerance_of(digits.front(), kind.units);
   return allowed;
 }
 
@@ -321,6 +393,49 @@ Verdict judge(const Claim& claim, double ours) {
   if (is_allowed) return claim.recorded == Verdict::derived ? Verdict::derived : Verdict::reproduced;
   if (claim.corrected && lies_in(*claim.corrected, 0, 0)) return Verdict::corrected;
   return Verdict::not_reproduced;
+}
+
+std::optional<std::string> problem_of_words(std::string_view words,
+                                            const std::set<std::string, std::less<>>& names, Fields fields) {
+  const Template parts = template_of(words);
+  for (const Field& field : parts.fields) {
+    if (!field.name.empty() && !names.contains(field.name))
+      return "must name a measure of \"also\" in braces, got " + in_quotes(field.name);
+    if (!field.form.empty() && field.form != "count" && !count_of(field.form) &&
+        written_as(field.form).unit.empty())
+      return "must have %, percent, degrees, count or of N behind the bar, got " + in_quotes(field.form);
+  }
+  if (parts.rest.find('{') != std::string_view::npos) return "has a { without }";
+  if (parts.fields.empty() && fields == Fields::needed)
+    return "must show what is measured, {}, got none in " + in_quotes(words);
+  return std::nullopt;
+}
+
+std::string in_words(std::string_view words, const NamedSpreads& spreads) {
+  const Template parts = template_of(words);
+  std::string text;
+  for (const Field& field : parts.fields) {
+    const auto spread = spreads.find(field.name);
+    if (spread == spreads.end()) throw std::invalid_argument("words: nothing is measured as " + field.name);
+    text.append(field.before).append(field_text(field.form, spread->second));
+  }
+  return text.append(parts.rest);
+}
+
+std::string allowed_in_words(std::string_view words, const Allowed& allowed) {
+  const std::vector<Field> fields = template_of(words).fields;
+  const auto own = std::ranges::find(fields, "", &Field::name);
+  const std::string form = own == fields.end() ? "" : own->form;
+  const auto& [least, most] = allowed.printed;
+  const bool is_one = least && most && *least == *most;
+  if (is_one && count_of(form) && allowed.above == 0) return field_text(form, {*least, *least, *least});
+  Written how = written_as(form);
+  how.digits = 4;
+  if (count_of(form)) how = {100, 4, " %"};
+  const auto text = [&](double value) { return rounded_text(how.factor * value + 0.0, how.digits); };
+  if (is_one) return text(*least) + (allowed.above > 0 ? " +- " + text(allowed.above) : "") + how.unit;
+  if (least && most) return text(*least - allowed.below) + " to " + text(*most + allowed.above) + how.unit;
+  return (least ? ">= " + text(*least - allowed.below) : "<= " + text(*most + allowed.above)) + how.unit;
 }
 
 }  // namespace impact_damper

@@ -6,7 +6,7 @@
 //                "printed": "approximately 0.15",  as the paper prints it
 //                "kind": "approximate", "digits": ["0.15"],  how it is judged: PrintedKind
 //                "measure": {"name": "first_missed", "scenes": ["nu2-e04"]},
-//                "words": "first missed at {}", "also": {},  our result in the statement's terms: words.hpp
+//                "words": "first missed at {}", "also": {},  our result in the statement's terms: in_words()
 //                "verdict": "not reproduced", "explanation": "...", "evidence": "..."}]}
 //
 // Where the paper prints nothing that a kind covers, as with an identity that holds to rounding, "value" or
@@ -35,10 +35,12 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/io/json_reader.hpp"
 
@@ -68,6 +70,7 @@ struct PrintedKind {
   std::size_t digits;       // how many printed numbers it takes
   Interval interval;        // of a word; empty for numbers
   std::string_view reason;  // why the interval is what it is
+  double units = 0;         // tolerated of the last digit, at most a tenth of the number
 };
 const std::vector<PrintedKind>& printed_kinds();
 
@@ -108,7 +111,7 @@ struct Claim : Statement {
   Allowed allowed;
   MeasureCall measure;
   std::map<std::string, MeasureCall, std::less<>> also;  // further numbers that the templates show
-  std::string words = "{}";                              // our result, a template of words.hpp
+  std::string words = "{}";                              // our result, a template of in_words()
   std::optional<Interval> corrected;
   Verdict recorded = Verdict::reproduced;
   std::string explanation, evidence;  // templates
@@ -142,5 +145,34 @@ ClaimsFile parse_claims(const std::string& name, const std::string& text);
 // it is reproduced, or derived for a claim recorded as that; otherwise corrected if `ours` lies in the
 // corrected interval, else not reproduced. A claim of ours holds or does not hold instead. NaN never agrees.
 Verdict judge(const Claim& claim, double ours);
+
+// Our result in the words of the paper's statement: a template of claims.json, "window from {upper} to
+// {lower}", filled with measured numbers.
+//
+//   {}         the claim's own measure; {NAME} one of those beside it (Claim::also)
+//   {NAME|%}   a share as a percentage: "58 % (45 to 83 %)"
+//   {|percent} what is measured in percent, {|degrees} in degrees: "4.04 % (3.4 to 4.7 %)"
+//   {|of 6}    a share as a count: "all 6", "none of 6", "5 of 6"
+//   {|count}   a whole number, "no" for 0
+//
+// Numbers have four significant digits, shares as percentages three. A number is the ensemble's median; its
+// extremes follow in brackets unless they read the same. What is allowed is written in the unit of the
+// claim's own field.
+using NamedSpreads = std::map<std::string, Spread, std::less<>>;  // "" is the claim's own measure
+
+// Returns the problem of a template whose fields may name `names`, absent if there is none. With
+// Fields::needed it must have a field.
+enum class Fields { allowed, needed };
+std::optional<std::string> problem_of_words(std::string_view words,
+                                            const std::set<std::string, std::less<>>& names, Fields fields);
+
+// Returns the filled template. It must have no problem, and `spreads` all that it names; throws
+// std::invalid_argument otherwise.
+std::string in_words(std::string_view words, const NamedSpreads& spreads);
+
+// Returns what lies between `least` and `most` or, where they are equal, within the tolerance of it, in the
+// unit of the first field "{}" of the template, which must have no problem: "4 to 15 %", ">= 5 degrees", "all
+// 6", "5 +- 0.1".
+std::string allowed_in_words(std::string_view words, const Allowed& allowed);
 
 }  // namespace impact_damper

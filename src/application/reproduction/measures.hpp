@@ -129,9 +129,8 @@ using FindSpread = Spread (*)(const Asked&);
 using Find = std::variant<FindInRun, FindInPair, FindInGroup, FindOnce, FindSpread>;
 
 struct Measure {
-  std::string_view name;
+  std::string_view name, meaning;
   Find find;
-  std::string_view meaning;
   std::vector<std::string_view> numbers = {};  // its parameters, all required
   Count scenes = usual_scenes(find);
   Count responses = {};

@@ -62,27 +62,13 @@ std::vector<std::vector<double>> bin_means(const std::vector<Curve>& curves, dou
   return all;
 }
 
-namespace {
-
-// Returns how far curves lie apart at equal x: the largest minus the least of their bin means divided by the
-// mean of these, in percent, for each of the bins that all of them reach.
-std::vector<double> bin_spreads_percent(const std::vector<Curve>& curves, double from, double to, int bins) {
+std::vector<double> spreads_percent(const std::vector<Curve>& curves, double from, double to, int bins) {
   std::vector<double> spreads;
   for (const std::vector<double>& means : bin_means(curves, from, to, bins)) {
     const auto [least, most] = std::ranges::minmax(means);
     spreads.push_back(100 * (most - least) / mean(means));
   }
   return spreads;
-}
-
-}  // namespace
-
-double spread_percent(const std::vector<Curve>& curves, double from, double to, int bins) {
-  return mean(bin_spreads_percent(curves, from, to, bins));
-}
-
-double worst_spread_percent(const std::vector<Curve>& curves, double from, double to, int bins) {
-  return most(bin_spreads_percent(curves, from, to, bins));
 }
 
 namespace {
@@ -98,134 +84,47 @@ std::vector<double> products(const Asked& asked, const RunGroup& group) {
   return all;
 }
 
-template <FirstPoint first>
-double product_mid_range(const Asked& asked, const RunGroup& group) {
+// Applies `of_range` to the least and the largest of them.
+template <FirstPoint first, double (*of_range)(double least, double most)>
+double product_range(const Asked& asked, const RunGroup& group) {
   const std::vector<double> all = products<first>(asked, group);
   if (all.empty()) return std::nan("");
   const auto [least, most] = std::ranges::minmax(all);
-  return (least + most) / 2;
+  return of_range(least, most);
 }
+double middle_of(double least, double most) { return (least + most) / 2; }
+double half_percent_of(double least, double most) { return 100 * (most - least) / (most + least); }
 
-template <FirstPoint first>
-double product_half_range(const Asked& asked, const RunGroup& group) {
-  const std::vector<double> all = products<first>(asked, group);
-  if (all.empty()) return std::nan("");
-  const auto [least, most] = std::ranges::minmax(all);
-  return 100 * (most - least) / (most + least);
-}
-
-double product_mean(const Asked& asked, const RunGroup& group) { return mean(products(asked, group)); }
-
-using SpreadOfCurves = double (*)(const std::vector<Curve>&, double, double, int);
-template <LossOrdinate which, SpreadOfCurves spread = spread_percent>
+template <LossOrdinate which, double (*of_all)(const std::vector<double>&)>
 double collapse(const Asked& asked, const RunGroup& group) {
   std::vector<Curve> curves;
   curves.reserve(group.size());
   for (const Run* run : group) curves.push_back(loss_curve(asked, *run, which));
-  return spread(curves, asked.number("from"), asked.number("to"), asked.analysis().bins);
+  return of_all(spreads_percent(curves, asked.number("from"), asked.number("to"), asked.analysis().bins));
 }
 
+struct Point {
+  double x = std::nan(""), y = std::nan("");
+};
 // Returns the point of the highest ordinate.
-std::pair<double, double> highest(const Curve& curve) {
+Point highest(const Curve& curve) {
   const auto top = std::ranges::max_element(curve.y);
-  if (top == curve.y.end()) return {std::nan(""), std::nan("")};
+  if (top == curve.y.end()) return {};
   return {curve.x[static_cast<std::size_t>(top - curve.y.begin())], *top};
 }
 
-double loss_slope(const Asked& asked, const Run& run) {
-  return log_slope(loss_curve(asked, run, LossOrdinate::specific_secondary));
-}
-
-template <LossFactorOptions AnalysisOptions::*fit>
+template <LossFactorOptions AnalysisOptions::*fit, double Point::*part>
 double largest_loss(const Asked& asked, const Run& run) {
-  return highest(loss_curve(run, LossOrdinate::eta, asked.analysis().*fit)).second;
-}
-
-template <LossFactorOptions AnalysisOptions::*fit>
-double largest_loss_amplitude(const Asked& asked, const Run& run) {
-  return highest(loss_curve(run, LossOrdinate::eta, asked.analysis().*fit)).first;
-}
-
-// Closed forms of single impacts, nu -> 0.
-double single_impact_fold(const Asked& asked) { return fold_amplitude(asked.number("restitution")); }
-double single_impact_peak_loss(const Asked& asked) {
-  return asked.number("mass_ratio") * peak_loss(asked.number("restitution"));
-}
-double single_impact_peak_product(const Asked& asked) {
-  return peak_product_amplitude(asked.number("restitution"));
-}
-
-double product_peak_amplitude(const Asked& asked, const Run& run) {
-  const LossFactorOptions fit{static_cast<int>(asked.number("averaged_over"))};
-  return highest(
-             loss_curve(run, LossOrdinate::amplitude_times, fit, asked.number("from"), asked.number("to")))
-      .first;
-}
-
-double loss_near_span(const Asked& asked, const Run& run) {
-  const double eta = asked.number("eta"), factor = asked.number("factor");
-  double least = std::numeric_limits<double>::infinity(), most = 0;
-  const Curve curve = loss_curve(asked, run, LossOrdinate::eta);
-  for (std::size_t i = 0; i < curve.x.size(); ++i) {
-    if (!(curve.y[i] >= eta / factor && curve.y[i] <= eta * factor)) continue;
-    least = std::min(least, curve.x[i]);
-    most = std::max(most, curve.x[i]);
-  }
-  return most / least;
+  return highest(loss_curve(run, LossOrdinate::eta, asked.analysis().*fit)).*part;
 }
 
 double mean_product(const Asked& asked, const Run& run) { return mean(products(asked, {&run})); }
-
-double mass_ratio_exponent(const Asked& asked, const RunGroup& group) {
-  Curve points;
-  for (const Run* run : group) {
-    const double nu = run->scene.damper().mass_ratio;
-    points.add(nu, nu * mean_product(asked, *run));
-  }
-  return log_slope(points);
-}
-
-double product_ratio(const Asked& asked, const Run& first, const Run& second) {
-  return mean_product(asked, first) / mean_product(asked, second);
-}
 
 // Returns the curve of A eta over A.
 Curve product_of_total_loss(const Asked& asked, const Run& run) {
   Curve curve = loss_curve(asked, run, LossOrdinate::eta);
   for (std::size_t i = 0; i < curve.x.size(); ++i) curve.y[i] *= curve.x[i];
   return curve;
-}
-
-// The mass ratio and the restitution of the scenes do not enter: their motion alone is compared with the
-// factor.
-double loss_ratio_exponent(const Asked& asked, const Run& first, const Run& second) {
-  const double ratio =
-      mean(product_of_total_loss(asked, first).y) / mean(product_of_total_loss(asked, second).y);
-  return logarithm(ratio) / logarithm(asked.number("factor"));
-}
-
-// Weighted with the amplitude, so that all bins count alike: the scatter of eta is proportional to 1/A.
-double added_loss_error(const Asked& asked, const Run& first, const Run& second) {
-  const Curve damped = product_of_total_loss(asked, first), undamped = product_of_total_loss(asked, second);
-  double added = 0, expected = 0;
-  for (const auto& means : bin_means({damped, undamped, {damped.x, damped.x}}, asked.number("from"),
-                                     asked.number("to"), asked.analysis().bins)) {
-    added += means[0] - means[1];
-    expected += 2 * asked.number("damping_ratio") * means[2];
-  }
-  return added / expected - 1;
-}
-
-double tail_loss_ratio(const Asked& asked, const Run& run) {
-  const Curve all = loss_curve(run, LossOrdinate::eta, asked.analysis().loss);
-  const std::size_t count = std::min(all.y.size(), static_cast<std::size_t>(asked.number("last")));
-  const std::vector<double> tail(all.y.end() - static_cast<std::ptrdiff_t>(count), all.y.end());
-  return spread_of(tail).median / highest(all).second;
-}
-
-double smoothing_ratio(const Asked& asked, const Run& run) {
-  return largest_loss<&AnalysisOptions::smoother_loss>(asked, run) /
-         largest_loss<&AnalysisOptions::loss>(asked, run);
 }
 
 // Returns the width of the peak of eta: ln of the ratio of the amplitudes around it at half its height.
@@ -239,17 +138,6 @@ double width_of_peak(const Run& run, const LossFactorOptions& fit) {
   return logarithm(curve.x[static_cast<std::size_t>(first - curve.y.begin())] /
                    curve.x[static_cast<std::size_t>(last - curve.y.begin())]);
 }
-double smoothing_width_ratio(const Asked& asked, const Run& run) {
-  return width_of_peak(run, asked.analysis().smoother_loss) / width_of_peak(run, asked.analysis().loss);
-}
-
-double single_impact_advantage(const Asked& asked, const Run& run) {
-  const AnalysisOptions& analysis = asked.analysis();
-  const auto window = longest_window(regular_windows(run, analysis.regimes), 1);
-  if (!window) return std::nan("");
-  return highest(loss_curve(run, LossOrdinate::eta, analysis.loss, 0, window->upper)).second /
-         highest(loss_curve(run, LossOrdinate::eta, analysis.loss, window->upper)).second;
-}
 
 std::vector<double> edges_of(const Asked& asked) {
   return descending_amplitudes(asked.number("to"), asked.number("from"), set_bins_in_decade);
@@ -261,147 +149,211 @@ double loss_ratio(const Asked& asked) {
   const auto [least, greatest] = std::ranges::minmax(losses);
   return greatest / least;
 }
-double loss_variation_percent(const Asked& asked) {
-  const double ratio = loss_ratio(asked);
-  return 100 * (ratio - 1) / (ratio + 1);
-}
-
-// Returns the ratio of the ends of the widest range of amplitudes in which every loss factor lies within the
-// share `within` of the middle between the greatest and the least.
-double alike_range(const Asked& asked) {
-  const std::vector<double> edges = edges_of(asked), losses = losses_between(asked.ensemble(), edges).mean;
-  const double share = asked.number("within"), most = (1 + share) / (1 - share);
-  double widest = 1;
-  for (std::size_t first = 0; first < losses.size(); ++first) {
-    double least = losses[first], greatest = losses[first];
-    for (std::size_t k = first; k < losses.size(); ++k) {
-      least = std::min(least, losses[k]);
-      greatest = std::max(greatest, losses[k]);
-      if (!(greatest <= most * least)) break;
-      widest = std::max(widest, edges[first] / edges[k + 1]);
-    }
-  }
-  return widest;
-}
-
-// Returns the difference between the loss factor of several dampers and the sum of theirs, divided by the
-// sum, in the bins between the amplitudes: median, least and greatest.
-Spread from_sum(const Asked& asked) {
-  const std::vector<double> edges = edges_of(asked);
-  const std::vector<Run>& together = asked.ensemble();
-  if (has_one_damper(together.front().scene))
-    throw std::invalid_argument("measure from_sum: run " + asked.call.scenes[0] + " is of one damper");
-  const std::vector<double> losses = losses_between(together, edges).mean,
-                            sum = sum_of_losses(together.front().scene.dampers,
-                                                loss_alone(asked.runs.ensemble(asked.call.scenes[1])), edges);
-  std::vector<double> differences;
-  for (std::size_t k = 0; k < sum.size(); ++k) differences.push_back(losses[k] / sum[k] - 1);
-  return spread_of(differences);
-}
 
 }  // namespace
 
 std::vector<Measure> loss_measures() {
   return {
-      {"product_mid_range", product_mid_range<FirstPoint::left_out>,
-       "mean of the least and the largest A eta_s / nu of all scenes, A in [from, to]", numbers("from", "to"),
-       scenes(1, 8)},
-      {"product_half_range_percent", product_half_range<FirstPoint::left_out>,
-       "half their difference, in percent of their mean", numbers("from", "to"), scenes(1, 8)},
-      {"product_mid_range_with_first", product_mid_range<FirstPoint::counted>,
-       "product_mid_range with each curve's first point, which the release enters", numbers("from", "to"),
-       scenes(1, 8)},
-      {"product_half_range_with_first_percent", product_half_range<FirstPoint::counted>,
-       "product_half_range_percent with each curve's first point", numbers("from", "to"), scenes(1, 8)},
-      {"product_mean", product_mean, "mean of all A eta_s / nu of all scenes, A in [from, to]",
+      {"product_mid_range", "mean of the least and the largest A eta_s / nu of all scenes, A in [from, to]",
+       product_range<FirstPoint::left_out, middle_of>, numbers("from", "to"), scenes(1, 8)},
+      {"product_half_range_percent", "half their difference, in percent of their mean",
+       product_range<FirstPoint::left_out, half_percent_of>, numbers("from", "to"), scenes(1, 8)},
+      {"product_mid_range_with_first",
+       "product_mid_range with each curve's first point, which the release enters",
+       product_range<FirstPoint::counted, middle_of>, numbers("from", "to"), scenes(1, 8)},
+      {"product_half_range_with_first_percent", "product_half_range_percent with each curve's first point",
+       product_range<FirstPoint::counted, half_percent_of>, numbers("from", "to"), scenes(1, 8)},
+      {"product_mean", "mean of all A eta_s / nu of all scenes, A in [from, to]",
+       [](const Asked& asked, const RunGroup& group) { return mean(products(asked, group)); },
        numbers("from", "to"), scenes(1, 8)},
-      {"loss_slope", loss_slope, "d ln eta_s / d ln A by least squares, A in [from, to]",
+      {"loss_slope", "d ln eta_s / d ln A by least squares, A in [from, to]",
+       [](const Asked& asked, const Run& run) {
+         return log_slope(loss_curve(asked, run, LossOrdinate::specific_secondary));
+       },
        numbers("from", "to")},
-      {"largest_loss", largest_loss<&AnalysisOptions::loss>, "largest averaged eta"},
-      {"largest_loss_amplitude", largest_loss_amplitude<&AnalysisOptions::loss>,
-       "amplitude at which it is met"},
-      {"largest_smoother_loss", largest_loss<&AnalysisOptions::smoother_loss>,
-       "largest eta averaged over 18 half cycles"},
-      {"largest_smoother_loss_amplitude", largest_loss_amplitude<&AnalysisOptions::smoother_loss>,
-       "amplitude at which it is met"},
-      {"single_impact_fold", single_impact_fold,
-       "amplitude below which single impacts do not exist, closed form for nu -> 0", numbers("restitution")},
-      {"single_impact_peak_loss", single_impact_peak_loss,
-       "largest eta of single impacts, closed form for nu -> 0, times nu",
-       numbers("mass_ratio", "restitution")},
-      {"single_impact_peak_product", single_impact_peak_product,
-       "amplitude of the largest A eta / nu of single impacts, closed form for nu -> 0",
+      {"largest_loss", "largest averaged eta", largest_loss<&AnalysisOptions::loss, &Point::y>},
+      {"largest_loss_amplitude", "amplitude at which it is met",
+       largest_loss<&AnalysisOptions::loss, &Point::x>},
+      {"largest_smoother_loss", "largest eta averaged over 18 half cycles",
+       largest_loss<&AnalysisOptions::smoother_loss, &Point::y>},
+      {"largest_smoother_loss_amplitude", "amplitude at which it is met",
+       largest_loss<&AnalysisOptions::smoother_loss, &Point::x>},
+      {"single_impact_fold", "amplitude below which single impacts do not exist, closed form for nu -> 0",
+       [](const Asked& asked) { return fold_amplitude(asked.number("restitution")); },
        numbers("restitution")},
-      {"product_peak_amplitude", product_peak_amplitude,
+      {"single_impact_peak_loss", "largest eta of single impacts, closed form for nu -> 0, times nu",
+       [](const Asked& asked) { return asked.number("mass_ratio") * peak_loss(asked.number("restitution")); },
+       numbers("mass_ratio", "restitution")},
+      {"single_impact_peak_product",
+       "amplitude of the largest A eta / nu of single impacts, closed form for nu -> 0",
+       [](const Asked& asked) { return peak_product_amplitude(asked.number("restitution")); },
+       numbers("restitution")},
+      {"product_peak_amplitude",
        "amplitude of the largest A eta_s / nu, A in [from, to], averaged over so many half cycles",
+       [](const Asked& asked, const Run& run) {
+         const LossFactorOptions fit{static_cast<int>(asked.number("averaged_over"))};
+         return highest(loss_curve(run, LossOrdinate::amplitude_times, fit, asked.number("from"),
+                                   asked.number("to")))
+             .x;
+       },
        numbers("from", "to", "averaged_over")},
-      {"loss_near_span", loss_near_span,
+      {"loss_near_span",
        "ratio of the largest to the least amplitude at which the averaged loss factor is within a factor of "
        "eta",
+       [](const Asked& asked, const Run& run) {
+         const double eta = asked.number("eta"), factor = asked.number("factor");
+         double least = std::numeric_limits<double>::infinity(), most = 0;
+         const Curve curve = loss_curve(asked, run, LossOrdinate::eta);
+         for (std::size_t i = 0; i < curve.x.size(); ++i) {
+           if (!(curve.y[i] >= eta / factor && curve.y[i] <= eta * factor)) continue;
+           least = std::min(least, curve.x[i]);
+           most = std::max(most, curve.x[i]);
+         }
+         return most / least;
+       },
        numbers("eta", "factor", "from", "to")},
-      {"collapse_eta_percent", collapse<LossOrdinate::eta>,
-       "spread of eta between the scenes at equal amplitude, in percent", numbers("from", "to"),
-       scenes(2, 8)},
-      {"collapse_specific_percent", collapse<LossOrdinate::specific>, "the same of eta/nu",
-       numbers("from", "to"), scenes(2, 8)},
-      {"collapse_secondary_percent", collapse<LossOrdinate::specific_secondary>,
-       "the same of (eta - 2 zeta)/nu", numbers("from", "to"), scenes(2, 8)},
-      {"collapse_restitution_percent", collapse<LossOrdinate::by_restitution>,
-       "the same of A (eta - 2 zeta)/nu/(1 - e)", numbers("from", "to"), scenes(2, 8)},
-      {"collapse_product_percent", collapse<LossOrdinate::amplitude_times>, "the same of A (eta - 2 zeta)/nu",
-       numbers("from", "to"), scenes(2, 8)},
-      {"collapse_carried_percent", collapse<LossOrdinate::carried>,
-       "the same of A (eta - 2 zeta/(1 + nu))/nu", numbers("from", "to"), scenes(2, 8)},
-      {"collapse_specific_worst_percent", collapse<LossOrdinate::specific, worst_spread_percent>,
+      {"collapse_specific_percent", "spread of eta/nu between the scenes at equal amplitude, in percent",
+       collapse<LossOrdinate::specific, mean>, numbers("from", "to"), scenes(2, 8)},
+      {"collapse_secondary_percent", "the same of (eta - 2 zeta)/nu",
+       collapse<LossOrdinate::specific_secondary, mean>, numbers("from", "to"), scenes(2, 8)},
+      {"collapse_restitution_percent", "the same of A (eta - 2 zeta)/nu/(1 - e)",
+       collapse<LossOrdinate::by_restitution, mean>, numbers("from", "to"), scenes(2, 8)},
+      {"collapse_product_percent", "the same of A (eta - 2 zeta)/nu",
+       collapse<LossOrdinate::amplitude_times, mean>, numbers("from", "to"), scenes(2, 8)},
+      {"collapse_carried_percent", "the same of A (eta - 2 zeta/(1 + nu))/nu",
+       collapse<LossOrdinate::carried, mean>, numbers("from", "to"), scenes(2, 8)},
+      {"collapse_specific_worst_percent",
        "spread of eta/nu between the scenes in the bin of amplitudes where it is greatest, in percent",
+       collapse<LossOrdinate::specific, most>, numbers("from", "to"), scenes(2, 8)},
+      {"collapse_secondary_worst_percent", "the same of (eta - 2 zeta)/nu",
+       collapse<LossOrdinate::specific_secondary, most>, numbers("from", "to"), scenes(2, 8)},
+      {"collapse_restitution_worst_percent", "the same of A (eta - 2 zeta)/nu/(1 - e)",
+       collapse<LossOrdinate::by_restitution, most>, numbers("from", "to"), scenes(2, 8)},
+      {"collapse_product_worst_percent", "the same of A (eta - 2 zeta)/nu",
+       collapse<LossOrdinate::amplitude_times, most>, numbers("from", "to"), scenes(2, 8)},
+      {"collapse_carried_worst_percent", "the same of A (eta - 2 zeta/(1 + nu))/nu",
+       collapse<LossOrdinate::carried, most>, numbers("from", "to"), scenes(2, 8)},
+      {"mass_ratio_exponent", "d ln (mean of A eta_s) / d ln nu by least squares over the scenes",
+       [](const Asked& asked, const RunGroup& group) {
+         Curve points;
+         for (const Run* run : group) {
+           const double nu = run->scene.damper().mass_ratio;
+           points.add(nu, nu * mean_product(asked, *run));
+         }
+         return log_slope(points);
+       },
        numbers("from", "to"), scenes(2, 8)},
-      {"collapse_secondary_worst_percent", collapse<LossOrdinate::specific_secondary, worst_spread_percent>,
-       "the same of (eta - 2 zeta)/nu", numbers("from", "to"), scenes(2, 8)},
-      {"collapse_restitution_worst_percent", collapse<LossOrdinate::by_restitution, worst_spread_percent>,
-       "the same of A (eta - 2 zeta)/nu/(1 - e)", numbers("from", "to"), scenes(2, 8)},
-      {"collapse_product_worst_percent", collapse<LossOrdinate::amplitude_times, worst_spread_percent>,
-       "the same of A (eta - 2 zeta)/nu", numbers("from", "to"), scenes(2, 8)},
-      {"collapse_carried_worst_percent", collapse<LossOrdinate::carried, worst_spread_percent>,
-       "the same of A (eta - 2 zeta/(1 + nu))/nu", numbers("from", "to"), scenes(2, 8)},
-      {"mass_ratio_exponent", mass_ratio_exponent,
-       "d ln (mean of A eta_s) / d ln nu by least squares over the scenes", numbers("from", "to"),
-       scenes(2, 8)},
-      {"product_ratio", product_ratio, "mean A eta_s / nu of the first scene, divided by the second's",
+      {"product_ratio", "mean A eta_s / nu of the first scene, divided by the second's",
+       [](const Asked& asked, const Run& first, const Run& second) {
+         return mean_product(asked, first) / mean_product(asked, second);
+       },
        numbers("from", "to")},
-      {"loss_ratio_exponent", loss_ratio_exponent,
+      // The mass ratio and the restitution of the scenes do not enter: their motion alone is compared with
+      // the factor.
+      {"loss_ratio_exponent",
        "power of the factor that is the ratio of the mean A eta of the first scene to the second's",
+       [](const Asked& asked, const Run& first, const Run& second) {
+         const double ratio =
+             mean(product_of_total_loss(asked, first).y) / mean(product_of_total_loss(asked, second).y);
+         return logarithm(ratio) / logarithm(asked.number("factor"));
+       },
        numbers("factor", "from", "to")},
-      {"added_loss_error", added_loss_error,
+      // Weighted with the amplitude, so that all bins count alike: the scatter of eta is proportional to 1/A.
+      {"added_loss_error",
        "what the averaged eta of the first scene has more than the second's, divided by 2 zeta, less 1",
+       [](const Asked& asked, const Run& first, const Run& second) {
+         const Curve damped = product_of_total_loss(asked, first),
+                     undamped = product_of_total_loss(asked, second);
+         double added = 0, expected = 0;
+         for (const auto& means : bin_means({damped, undamped, {damped.x, damped.x}}, asked.number("from"),
+                                            asked.number("to"), asked.analysis().bins)) {
+           added += means[0] - means[1];
+           expected += 2 * asked.number("damping_ratio") * means[2];
+         }
+         return added / expected - 1;
+       },
        numbers("damping_ratio", "from", "to")},
-      {"tail_loss_ratio", tail_loss_ratio, "median of the last so many values of eta, divided by the largest",
+      {"tail_loss_ratio", "median of the last so many values of eta, divided by the largest",
+       [](const Asked& asked, const Run& run) {
+         const Curve all = loss_curve(run, LossOrdinate::eta, asked.analysis().loss);
+         const std::size_t count = std::min(all.y.size(), static_cast<std::size_t>(asked.number("last")));
+         const std::vector<double> tail(all.y.end() - static_cast<std::ptrdiff_t>(count), all.y.end());
+         return spread_of(tail).median / highest(all).y;
+       },
        numbers("last")},
-      {"smoothing_ratio", smoothing_ratio,
-       "largest eta averaged over 18 half cycles, divided by that over 10"},
-      {"smoothing_width_ratio", smoothing_width_ratio,
+      {"smoothing_ratio", "largest eta averaged over 18 half cycles, divided by that over 10",
+       [](const Asked& asked, const Run& run) {
+         return largest_loss<&AnalysisOptions::smoother_loss, &Point::y>(asked, run) /
+                largest_loss<&AnalysisOptions::loss, &Point::y>(asked, run);
+       }},
+      {"smoothing_width_ratio",
        "width of the peak of eta in ln A, at half its height, averaged over 18 half cycles, divided by that "
-       "over 10"},
-      {"single_impact_advantage", single_impact_advantage,
-       "largest eta in and below the window of single impacts, divided by the largest above it"},
+       "over 10",
+       [](const Asked& asked, const Run& run) {
+         return width_of_peak(run, asked.analysis().smoother_loss) /
+                width_of_peak(run, asked.analysis().loss);
+       }},
+      {"single_impact_advantage",
+       "largest eta in and below the window of single impacts, divided by the largest above it",
+       [](const Asked& asked, const Run& run) {
+         const AnalysisOptions& analysis = asked.analysis();
+         const auto window = longest_window(regular_windows(run, analysis.regimes), 1);
+         if (!window) return std::nan("");
+         return highest(loss_curve(run, LossOrdinate::eta, analysis.loss, 0, window->upper)).y /
+                highest(loss_curve(run, LossOrdinate::eta, analysis.loss, window->upper)).y;
+       }},
   };
 }
 
 std::vector<Measure> damper_measures() {
   std::vector<Measure> all{
-      {"loss_ratio", loss_ratio,
+      {"loss_ratio",
        "greatest loss factor between two amplitudes divided by the least, in bins of a twelfth of a decade",
-       numbers("from", "to"), scenes(1, 1)},
-      {"loss_variation_percent", loss_variation_percent,
+       loss_ratio, numbers("from", "to"), scenes(1, 1)},
+      {"loss_variation_percent",
        "half the difference of greatest and least loss factor between two amplitudes, in percent of their "
        "mean, in bins of a twelfth of a decade",
+       [](const Asked& asked) {
+         const double ratio = loss_ratio(asked);
+         return 100 * (ratio - 1) / (ratio + 1);
+       },
        numbers("from", "to"), scenes(1, 1)},
-      {"alike_range", alike_range,
+      {"alike_range",
        "widest range of amplitudes in which the loss factor is constant to a share either way, in bins of a "
        "twelfth of a decade: its upper end divided by the lower",
+       [](const Asked& asked) {
+         const std::vector<double> edges = edges_of(asked),
+                                   losses = losses_between(asked.ensemble(), edges).mean;
+         const double share = asked.number("within"), most = (1 + share) / (1 - share);
+         double widest = 1;
+         for (std::size_t first = 0; first < losses.size(); ++first) {
+           double least = losses[first], greatest = losses[first];
+           for (std::size_t k = first; k < losses.size(); ++k) {
+             least = std::min(least, losses[k]);
+             greatest = std::max(greatest, losses[k]);
+             if (!(greatest <= most * least)) break;
+             widest = std::max(widest, edges[first] / edges[k + 1]);
+           }
+         }
+         return widest;
+       },
        numbers("from", "to", "within"), scenes(1, 1)},
-      {"from_sum", from_sum,
+      {"from_sum",
        "loss factor of the dampers of the first run less the sum of what each would lose alone, by the "
        "second run, divided by the sum: median, least and greatest of the bins between two amplitudes",
+       [](const Asked& asked) {
+         const std::vector<double> edges = edges_of(asked);
+         const std::vector<Run>& together = asked.ensemble();
+         if (has_one_damper(together.front().scene))
+           throw std::invalid_argument("measure from_sum: run " + asked.call.scenes[0] + " is of one damper");
+         const std::vector<double> losses = losses_between(together, edges).mean,
+                                   sum = sum_of_losses(together.front().scene.dampers,
+                                                       loss_alone(asked.runs.ensemble(asked.call.scenes[1])),
+                                                       edges);
+         std::vector<double> differences;
+         for (std::size_t k = 0; k < sum.size(); ++k) differences.push_back(losses[k] / sum[k] - 1);
+         return spread_of(differences);
+       },
        numbers("from", "to"), scenes(2, 2)},
   };
   for (Measure& each : all) each.takes_dampers = true;

@@ -23,22 +23,6 @@ double peak_time_below(const Run& run, double amplitude) {
   return row ? run.half_cycles->peak_time[*row] : std::nan("");
 }
 
-Spread time_saved(const Asked& asked) {
-  const double amplitude = asked.number("amplitude");
-  std::vector<double> theirs, saved;
-  for (const Run& run : asked.runs.ensemble(asked.call.scenes.back()))
-    theirs.push_back(peak_time_below(run, amplitude));
-  const double reference = spread_of(theirs).median;
-  for (const Run& run : asked.ensemble())
-    saved.push_back(100 * (1 - peak_time_below(run, amplitude) / reference));
-  return spread_of(saved);
-}
-
-double time_ratio(const Asked& asked, const Run& ours, const Run& theirs) {
-  const double amplitude = asked.number("amplitude");
-  return peak_time_below(ours, amplitude) / peak_time_below(theirs, amplitude);
-}
-
 // Returns the share of the half cycles with an amplitude in [from, to] that belong to no regular window.
 double mixed_share(const Asked& asked, const Run& run) {
   const std::vector<double>& amplitude = half_cycles_of(run).amplitude;
@@ -53,17 +37,6 @@ double mixed_share(const Asked& asked, const Run& run) {
   return mixed / rows;
 }
 
-double mixed_share_ratio(const Asked& asked, const Run& ours, const Run& theirs) {
-  return mixed_share(asked, ours) / mixed_share(asked, theirs);
-}
-
-double zeta_error(const Asked& asked) { return zeta_m_iterative(asked.number("restitution")).velocity_error; }
-double zeta_steps(const Asked& asked) { return zeta_m_iterative(asked.number("restitution")).steps; }
-double zeta_difference(const Asked& asked) {
-  const double e = asked.number("restitution");
-  return std::abs(zeta_m_iterative(e).zeta_m - zeta_m_closed_form(e));
-}
-
 // Returns a scene with both masses at rest, except for the secondary's unit velocity towards the left wall,
 // half the clearance away.
 Scene single_impact_scene(double mass_ratio, double restitution) {
@@ -75,40 +48,6 @@ Scene single_impact_scene(double mass_ratio, double restitution) {
   scene.damper().restitution = restitution;
   scene.until_time = 1;
   return scene;
-}
-
-double wall_restitution(const Asked& asked) {
-  const Scene scene = single_impact_scene(asked.number("mass_ratio"), asked.number("restitution"));
-  const Run contact = asked.runs.simulated(scene, Exact{}, {.contacts = true});
-  if (contact.contacts->end.empty()) return std::nan("");
-  const double end = contact.contacts->end.front();
-  const Run again =
-      asked.runs.simulated(scene, Exact{}, {.contacts = true, .history = {{end, end + 1e-9, 2}}});
-  return again.history->dampers[0].w.back();
-}
-
-double contact_frequency(const Asked& asked) {
-  const Scene scene = single_impact_scene(asked.number("mass_ratio"), asked.number("restitution"));
-  const Contacts contacts = *asked.runs.simulated(scene, Exact{}, {.contacts = true}).contacts;
-  if (contacts.end.empty()) return std::nan("");
-  const double duration = contacts.end.front() - contacts.begin.front();
-  return half_turn<double>() / duration / std::sqrt(scene.damper().wall_stiffness);
-}
-
-// Simulates a run again with its own engine, the wall sampled finely through the contact that its fastest
-// impact begins.
-double wall_overlap(const Asked& asked, const Run& run) {
-  const std::vector<double>& speed = impacts_of(run).relative_velocity;
-  if (speed.empty()) return std::nan("");
-  const auto fastest = std::ranges::max_element(speed, {}, [](double each) { return std::abs(each); });
-  const double begin = run.impacts->time[static_cast<std::size_t>(fastest - speed.begin())];
-  Scene scene = run.scene;
-  scene.until_amplitude.reset();
-  scene.until_time = begin + nominal_contact_time(scene.damper());
-  const Run again = asked.runs.simulated(scene, run.engine, {.history = {{begin, *scene.until_time, 201}}});
-  double overlap = 0;
-  for (const double y : again.history->dampers[0].y) overlap = std::max({overlap, -y, y - 1});
-  return overlap;
 }
 
 // Whether the component element method, in ten thousand steps of length h, keeps the amplitude of a primary
@@ -127,17 +66,6 @@ bool is_stable(const Runs& runs, double h) {
   } catch (const NumericalError&) {
     return false;  // overflow
   }
-}
-
-// Returns the largest step that stays bounded, by bisection. The highest mode is the primary mass's, of
-// frequency 1.
-double step_limit(const Asked& asked) {
-  double low = 0.5, high = 8;
-  while (high - low > 1e-6) {
-    const double h = (low + high) / 2;
-    (is_stable(asked.runs, h) ? low : high) = h;
-  }
-  return low;
 }
 
 // Returns the exponent of the time step in the error of the component element method, by least squares. The
@@ -193,14 +121,6 @@ double steps_of(const Scene& scene, Cem engine) {
   }
   return static_cast<double>(most);
 }
-// Returns the steps that the paper's stuck regime saves in the decay of the scene.
-double stuck_regime_steps_percent(const Asked& asked) {
-  Scene scene = asked.file().scene;
-  scene.until_time.reset();
-  scene.until_amplitude = asked.number("amplitude");
-  return 100 * (1 - steps_of(scene, located_method(asked.number("stuck_speed"))) /
-                        steps_of(scene, located_method({})));
-}
 
 // Returns the decay of a viscous oscillator: the secondary mass stays at rest, out of reach of walls that
 // move by less than half the clearance.
@@ -211,16 +131,6 @@ HalfCycles viscous_decay(const Asked& asked) {
   scene.damper().y0 = 0.1;
   scene.until_time = 200;
   return *asked.runs.simulated(scene, Exact{}, Record{}).half_cycles;
-}
-
-double viscous_loss(const Asked& asked) {
-  return spread_of(averaged_loss_factor(viscous_decay(asked), asked.analysis().loss).eta).median /
-         (2 * asked.number("damping_ratio"));
-}
-
-double viscous_loss_per_cycle(const Asked& asked) {
-  const std::vector<double> x = viscous_decay(asked).amplitude;
-  return 2 * (x.at(3) - x.at(5)) / x.at(4) / (2 * asked.number("damping_ratio"));
 }
 
 // Returns the change of an energy, in percent, from the release to until_time. Nothing is lost before a wall
@@ -285,107 +195,177 @@ double stuck_coefficient(const Run& run, Restoring restoring, Driving driving) {
   return products / squares;
 }
 
-// Returns the coefficient of the force in x'' + x/(1 + nu) = coefficient f0 sin(omega_f t).
-double stuck_forcing(const Asked& asked) {
-  const Run run = stuck_run(asked);
-  const History& h = *run.history;
-  return stuck_coefficient(
-      run, [&](std::size_t i) { return h.x[i] / (1 + run.scene.damper().mass_ratio); },
-      [&](std::size_t i) {
-        return run.scene.force_amplitude * sin_cos(run.scene.force_frequency * h.time[i]).sin;
-      });
-}
-
-// Returns zeta_s/zeta of the paper's (9) (M9.6, M9.7), minus the coefficient of 2 omega_s zeta x' in the
-// stuck motion: a mass at rest against its wall moves with it, in a sustained contact.
-double stuck_damping(const Asked& asked) {
-  Scene scene;
-  scene.damper().mass_ratio = asked.number("mass_ratio");
-  scene.damping_ratio = asked.number("damping_ratio");
-  scene.damper().restitution = 0;
-  scene.damper().wall_stiffness = 1e6;
-  scene.x0 = -6;
-  scene.until_time = 1;
-  const Run run = asked.runs.simulated(scene, Exact{}, {.contacts = true, .history = {{0, 1, 1001}}});
-  const History& h = *run.history;
-  const double omega_s = 1 / std::sqrt(1 + scene.damper().mass_ratio);
-  return -stuck_coefficient(
-      run, [&](std::size_t i) { return omega_s * omega_s * h.x[i]; },
-      [&](std::size_t i) { return 2 * scene.damping_ratio * omega_s * h.v[i]; });
-}
-
-// Returns how far the stuck mass moves from its wall, divided by how far y'' = -x'' would move it.
-double stuck_drift(const Asked& asked) {
-  const Run run = stuck_run(asked);
-  const History& h = *run.history;
-  const std::vector<double>& y = h.dampers[0].y;
-  double moved = 0, predicted = 0;
-  std::size_t contact = run.contacts->begin.size(), begin = 0;
-  for_each_stuck_sample(run, [&](std::size_t i, std::size_t c) {
-    if (c != contact) contact = c, begin = i;
-    moved = std::max(moved, std::abs(y[i] - y[begin]));
-    predicted = std::max(predicted, std::abs(h.x[i] - h.x[begin] - h.v[begin] * (h.time[i] - h.time[begin])));
-  });
-  return moved / predicted;
-}
-
 }  // namespace
 
 std::vector<Measure> model_measures() {
   return {
-      {"mixed_share_ratio", mixed_share_ratio,
+      {"mixed_share_ratio",
        "share of the half cycles that belong to no regular window, divided by the second run's",
+       [](const Asked& asked, const Run& ours, const Run& theirs) {
+         return mixed_share(asked, ours) / mixed_share(asked, theirs);
+       },
        numbers("from", "to")},
-      {"time_saved_percent", time_saved,
+      {"time_saved_percent",
        "by how much the first run reaches an amplitude before the second, in percent of the time",
+       [](const Asked& asked) {
+         const double amplitude = asked.number("amplitude");
+         std::vector<double> theirs, saved;
+         for (const Run& run : asked.runs.ensemble(asked.call.scenes.back()))
+           theirs.push_back(peak_time_below(run, amplitude));
+         const double reference = spread_of(theirs).median;
+         for (const Run& run : asked.ensemble())
+           saved.push_back(100 * (1 - peak_time_below(run, amplitude) / reference));
+         return spread_of(saved);
+       },
        numbers("amplitude"), scenes(2, 2)},
-      {"time_ratio", time_ratio, "time down to an amplitude, divided by the second run's",
+      {"time_ratio", "time down to an amplitude, divided by the second run's",
+       [](const Asked& asked, const Run& ours, const Run& theirs) {
+         const double amplitude = asked.number("amplitude");
+         return peak_time_below(ours, amplitude) / peak_time_below(theirs, amplitude);
+       },
        numbers("amplitude")},
-      {"zeta_error", zeta_error, "velocity error of the iterative zeta_m", numbers("restitution")},
-      {"zeta_steps", zeta_steps, "steps of the iterative zeta_m through one impact", numbers("restitution")},
-      {"zeta_difference", zeta_difference, "iterative zeta_m less the closed form, absolute",
+      {"zeta_error", "velocity error of the iterative zeta_m",
+       [](const Asked& asked) { return zeta_m_iterative(asked.number("restitution")).velocity_error; },
        numbers("restitution")},
-      {"wall_restitution", wall_restitution,
-       "relative speed after one impact of the exact engine, divided by that before",
+      {"zeta_steps", "steps of the iterative zeta_m through one impact",
+       [](const Asked& asked) { return double(zeta_m_iterative(asked.number("restitution")).steps); },
+       numbers("restitution")},
+      {"zeta_difference", "iterative zeta_m less the closed form, absolute",
+       [](const Asked& asked) {
+         const double e = asked.number("restitution");
+         return std::abs(zeta_m_iterative(e).zeta_m - zeta_m_closed_form(e));
+       },
+       numbers("restitution")},
+      {"wall_restitution", "relative speed after one impact of the exact engine, divided by that before",
+       [](const Asked& asked) {
+         const Scene scene = single_impact_scene(asked.number("mass_ratio"), asked.number("restitution"));
+         const Run contact = asked.runs.simulated(scene, Exact{}, {.contacts = true});
+         if (contact.contacts->end.empty()) return std::nan("");
+         const double end = contact.contacts->end.front();
+         const Run again = asked.runs.simulated(scene, Exact{}, {.history = {{end, end + 1e-9, 2}}});
+         return again.history->dampers[0].w.back();
+       },
        numbers("mass_ratio", "restitution")},
-      {"contact_frequency", contact_frequency,
-       "frequency of one contact of the exact engine, divided by the root of k",
+      {"contact_frequency", "frequency of one contact of the exact engine, divided by the root of k",
+       [](const Asked& asked) {
+         const Scene scene = single_impact_scene(asked.number("mass_ratio"), asked.number("restitution"));
+         const Contacts contacts = *asked.runs.simulated(scene, Exact{}, {.contacts = true}).contacts;
+         if (contacts.end.empty()) return std::nan("");
+         const double duration = contacts.end.front() - contacts.begin.front();
+         return half_turn<double>() / duration / std::sqrt(scene.damper().wall_stiffness);
+       },
        numbers("mass_ratio", "restitution")},
-      {"wall_overlap", wall_overlap, "largest deformation of the wall, in units of the clearance"},
-      {"step_limit", step_limit,
-       "largest omega h at which the component element method stays bounded, undamped, by trial"},
-      {"step_order", step_order<false>,
+      // The run is simulated again with its own engine, the wall sampled finely through the contact that its
+      // fastest impact begins.
+      {"wall_overlap", "largest deformation of the wall, in units of the clearance",
+       [](const Asked& asked, const Run& run) {
+         const std::vector<double>& speed = impacts_of(run).relative_velocity;
+         if (speed.empty()) return std::nan("");
+         const auto fastest = std::ranges::max_element(speed, {}, [](double each) { return std::abs(each); });
+         const double begin = run.impacts->time[static_cast<std::size_t>(fastest - speed.begin())];
+         Scene scene = run.scene;
+         scene.until_amplitude.reset();
+         scene.until_time = begin + nominal_contact_time(scene.damper());
+         const Run again =
+             asked.runs.simulated(scene, run.engine, {.history = {{begin, *scene.until_time, 201}}});
+         double overlap = 0;
+         for (const double y : again.history->dampers[0].y) overlap = std::max({overlap, -y, y - 1});
+         return overlap;
+       }},
+      // The highest mode is the primary mass's, of frequency 1.
+      {"step_limit",
+       "largest omega h at which the component element method stays bounded, undamped, by trial",
+       [](const Asked& asked) {
+         double low = 0.5, high = 8;
+         while (high - low > 1e-6) {
+           const double h = (low + high) / 2;
+           (is_stable(asked.runs, h) ? low : high) = h;
+         }
+         return low;
+       }},
+      {"step_order",
        "power of the time step as which the error of the component element method falls, down to a step "
        "smaller by a factor",
+       step_order<false>, numbers("steps_per_contact", "factor"), scenes(1, 1)},
+      {"step_order_located", "the same with touch and release located inside the step", step_order<true>,
        numbers("steps_per_contact", "factor"), scenes(1, 1)},
-      {"step_order_located", step_order<true>, "the same with touch and release located inside the step",
-       numbers("steps_per_contact", "factor"), scenes(1, 1)},
-      {"stuck_regime_steps_percent", stuck_regime_steps_percent,
+      {"stuck_regime_steps_percent",
        "steps of the component element method that the paper's stuck regime saves, down to an amplitude, in "
        "percent",
+       [](const Asked& asked) {
+         Scene scene = asked.file().scene;
+         scene.until_time.reset();
+         scene.until_amplitude = asked.number("amplitude");
+         return 100 * (1 - steps_of(scene, located_method(asked.number("stuck_speed"))) /
+                               steps_of(scene, located_method({})));
+       },
        numbers("stuck_speed", "amplitude"), scenes(1, 1)},
-      {"viscous_loss", viscous_loss, "averaged loss factor of viscous damping alone, divided by 2 zeta",
+      {"viscous_loss", "averaged loss factor of viscous damping alone, divided by 2 zeta",
+       [](const Asked& asked) {
+         return spread_of(averaged_loss_factor(viscous_decay(asked), asked.analysis().loss).eta).median /
+                (2 * asked.number("damping_ratio"));
+       },
        numbers("damping_ratio")},
-      {"viscous_loss_per_cycle", viscous_loss_per_cycle,
-       "2 dx/x over one cycle of viscous damping alone, divided by 2 zeta", numbers("damping_ratio")},
-      {"paper_energy_drift_percent", flight_energy_drift<paper_energy>,
-       "change of the paper's energy in a free flight, in percent", numbers("x0", "until_time")},
-      {"energy_drift_percent", flight_energy_drift<total_energy>,
-       "change of kinetic plus spring energy with the cross term in it, in percent",
-       numbers("x0", "until_time")},
-      {"impact_energy_without_wall_percent", missing_impact_energy<false>,
+      {"viscous_loss_per_cycle", "2 dx/x over one cycle of viscous damping alone, divided by 2 zeta",
+       [](const Asked& asked) {
+         const std::vector<double> x = viscous_decay(asked).amplitude;
+         return 2 * (x.at(3) - x.at(5)) / x.at(4) / (2 * asked.number("damping_ratio"));
+       },
+       numbers("damping_ratio")},
+      {"paper_energy_drift_percent", "change of the paper's energy in a free flight, in percent",
+       flight_energy_drift<paper_energy>, numbers("x0", "until_time")},
+      {"energy_drift_percent", "change of kinetic plus spring energy with the cross term in it, in percent",
+       flight_energy_drift<total_energy>, numbers("x0", "until_time")},
+      {"impact_energy_without_wall_percent",
        "energy missing halfway through a lossless impact if the wall's is left out, in percent",
-       numbers("mass_ratio")},
-      {"impact_energy_with_wall_percent", missing_impact_energy<true>,
-       "energy missing there with the wall's counted, in percent", numbers("mass_ratio")},
-      {"stuck_forcing", stuck_forcing,
+       missing_impact_energy<false>, numbers("mass_ratio")},
+      {"impact_energy_with_wall_percent", "energy missing there with the wall's counted, in percent",
+       missing_impact_energy<true>, numbers("mass_ratio")},
+      {"stuck_forcing",
        "coefficient of the force in the stuck motion, x'' + x/(1 + nu) = coefficient f0 sin(omega_f t)",
+       [](const Asked& asked) {
+         const Run run = stuck_run(asked);
+         const History& h = *run.history;
+         return stuck_coefficient(
+             run, [&](std::size_t i) { return h.x[i] / (1 + run.scene.damper().mass_ratio); },
+             [&](std::size_t i) {
+               return run.scene.force_amplitude * sin_cos(run.scene.force_frequency * h.time[i]).sin;
+             });
+       },
        numbers("mass_ratio")},
-      {"stuck_damping", stuck_damping,
-       "zeta_s by zeta in the stuck motion, x'' + 2 omega_s zeta_s x' + omega_s^2 x = 0",
+      // The paper's (9) (M9.6, M9.7). A mass at rest against its wall moves with it, in a sustained contact.
+      {"stuck_damping", "zeta_s by zeta in the stuck motion, x'' + 2 omega_s zeta_s x' + omega_s^2 x = 0",
+       [](const Asked& asked) {
+         Scene scene;
+         scene.damper().mass_ratio = asked.number("mass_ratio");
+         scene.damping_ratio = asked.number("damping_ratio");
+         scene.damper().restitution = 0;
+         scene.damper().wall_stiffness = 1e6;
+         scene.x0 = -6;
+         scene.until_time = 1;
+         const Run run = asked.runs.simulated(scene, Exact{}, {.contacts = true, .history = {{0, 1, 1001}}});
+         const History& h = *run.history;
+         const double omega_s = 1 / std::sqrt(1 + scene.damper().mass_ratio);
+         return -stuck_coefficient(
+             run, [&](std::size_t i) { return omega_s * omega_s * h.x[i]; },
+             [&](std::size_t i) { return 2 * scene.damping_ratio * omega_s * h.v[i]; });
+       },
        numbers("mass_ratio", "damping_ratio")},
-      {"stuck_drift", stuck_drift,
-       "how far a stuck mass leaves its wall, divided by how far y'' = -x'' would carry it",
+      {"stuck_drift", "how far a stuck mass leaves its wall, divided by how far y'' = -x'' would carry it",
+       [](const Asked& asked) {
+         const Run run = stuck_run(asked);
+         const History& h = *run.history;
+         const std::vector<double>& y = h.dampers[0].y;
+         double moved = 0, predicted = 0;
+         std::size_t contact = run.contacts->begin.size(), begin = 0;
+         for_each_stuck_sample(run, [&](std::size_t i, std::size_t c) {
+           if (c != contact) contact = c, begin = i;
+           moved = std::max(moved, std::abs(y[i] - y[begin]));
+           predicted =
+               std::max(predicted, std::abs(h.x[i] - h.x[begin] - h.v[begin] * (h.time[i] - h.time[begin])));
+         });
+         return moved / predicted;
+       },
        numbers("mass_ratio")},
   };
 }

@@ -1,4 +1,4 @@
-// Functions that the measures_*.cpp share.
+// Curves, and functions of them that measures and figures share; parts of the table of measures.
 #pragma once
 
 #include <algorithm>
@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "application/reproduction/curve.hpp"
 #include "application/reproduction/measures.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
+#include "impact_damper/responses/response_file.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {
@@ -24,6 +24,39 @@ std::vector<std::string_view> numbers(const Name&... names) {
 }
 constexpr Count scenes(std::size_t least, std::size_t most) { return {least, most}; }
 constexpr Count responses(std::size_t least, std::size_t most) { return {least, most}; }
+
+struct Curve {
+  std::vector<double> x, y;
+
+  void add(double at, double value) {
+    x.push_back(at);
+    y.push_back(value);
+  }
+};
+
+using SweepWay = std::vector<SteadyState> Sweep::*;
+
+// Returns for each start the curve that represents several steady motions under the same force: the largest
+// amplitude of the motions of one way at each value of the axis. All responses have the same values and
+// equally many starts. NaN where one of them has no amplitude, which may be the largest.
+inline std::vector<Curve> largest_amplitudes(const std::vector<const SweepResponse*>& responses,
+                                             SweepWay way) {
+  const std::vector<double> values = responses.front()->axis.values();
+  std::vector<Curve> curves(responses.front()->sweeps.size());
+  for (std::size_t n = 0; n < curves.size(); ++n) {
+    const auto largest_at = [&](std::size_t i) {
+      double largest = 0;
+      for (const SweepResponse* response : responses) {
+        const SteadyState& steady = (response->sweeps.at(n).*way).at(i);
+        if (!steady.means) return std::numeric_limits<double>::quiet_NaN();
+        largest = std::max(largest, steady.means->amplitude);
+      }
+      return largest;
+    };
+    for (std::size_t i = 0; i < values.size(); ++i) curves[n].add(values[i], largest_at(i));
+  }
+  return curves;
+}
 
 inline constexpr double everywhere = std::numeric_limits<double>::infinity();
 
@@ -45,12 +78,9 @@ double log_slope(Curve curve);
 // ln x on [from, to].
 std::vector<std::vector<double>> bin_means(const std::vector<Curve>& curves, double from, double to,
                                            int bins);
-// Return how far curves lie apart at equal x: the largest minus the least of their bin means divided by the
-// mean of these, in percent, as the mean over the bins, and in the bin where it is largest. NaN without bins.
-inline constexpr int default_bins = AnalysisOptions{}.bins;
-double spread_percent(const std::vector<Curve>& curves, double from, double to, int bins = default_bins);
-double worst_spread_percent(const std::vector<Curve>& curves, double from, double to,
-                            int bins = default_bins);
+// Returns how far curves lie apart at equal x: the largest minus the least of their bin means divided by the
+// mean of these, in percent, for each of these bins.
+std::vector<double> spreads_percent(const std::vector<Curve>& curves, double from, double to, int bins);
 
 // Return the mean, and the largest, of these. NaN if there is none.
 inline double mean(const std::vector<double>& values) {

@@ -9,7 +9,6 @@
 #include <variant>
 #include <vector>
 
-#include "application/reproduction/curve.hpp"
 #include "application/reproduction/measures_parts.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/orbits/two_impact_orbit.hpp"
@@ -102,52 +101,6 @@ Spread amplitude_error_percent(const Asked& asked) {
   });
 }
 
-Spread force_limit_ratio(const Asked& asked) {
-  return over_starts(asked, rising, [](const Curve& found, const Curve& needed) {
-    if (needed.x.empty()) return no_number;
-    for (std::size_t i = 0; i + 1 < found.x.size(); ++i) {
-      if (!(found.y[i] <= needed.x[0] && found.y[i + 1] > needed.x[0])) continue;
-      const double part = (needed.x[0] - found.y[i]) / (found.y[i + 1] - found.y[i]);
-      return (found.x[i] + part * (found.x[i + 1] - found.x[i])) / needed.y[0];
-    }
-    return no_number;
-  });
-}
-
-Spread jump_ratio(const Asked& asked) {
-  constexpr double half_of_the_clearance = 0.5;
-  return over_starts(asked, falling, [](const Curve& found, const Curve& needed) {
-    std::size_t least = found.x.size();  // index of the least force from which on that holds
-    while (least > 0 && found.y[least - 1] >= half_of_the_clearance) --least;
-    if (needed.y.empty() || least == 0 || least == found.x.size()) return no_number;
-    return (found.x[least - 1] + found.x[least]) / 2 / *std::ranges::min_element(needed.y);
-  });
-}
-
-// Visits each value of a sweep, with the motions of the rising and of the falling way.
-template <class Visit>
-void for_each_value(const Sweep& sweep, Visit visit) {
-  for (std::size_t i = 0; i < sweep.up.size(); ++i)
-    visit(static_cast<std::int64_t>(i), sweep.up[i], sweep.down[i]);
-}
-
-Spread one_motion_share(const Asked& asked) {
-  const std::vector<const SweepResponse*> responses = sweeps_of(asked);
-  std::vector<double> shares;
-  for (std::size_t n = 0; n < responses.front()->sweeps.size(); ++n) {
-    std::vector<double> same;
-    for (const SweepResponse* response : responses) {
-      for_each_value(response->sweeps[n], [&](std::int64_t, const SteadyState& up, const SteadyState& down) {
-        const double a = amplitude_of(up), b = amplitude_of(down);
-        const bool differ = amplitudes_differ(a, up.amplitude_scatter, b, down.amplitude_scatter);
-        same.push_back(a == a && b == b ? double(!differ) : no_number);
-      });
-    }
-    shares.push_back(mean(same));
-  }
-  return spread_of(shares);
-}
-
 // Numbers of points of a map that end in a motion with one impact on each wall in a period of the force.
 struct TwoImpactPoints {
   std::int64_t symmetric = 0, all = 0;
@@ -160,18 +113,6 @@ TwoImpactPoints two_impact_points(const Basin& basin) {
     if (each.symmetric) points.symmetric += each.points;
   }
   return points;
-}
-
-double two_impact_share(const Asked& asked) {
-  const Basin& basin = response_of<BasinResponse>(asked, asked.call.responses.front()).basin;
-  return static_cast<double>(two_impact_points(basin).symmetric) /
-         static_cast<double>(basin.attractor.size());
-}
-
-double equally_spaced_share(const Asked& asked) {
-  const TwoImpactPoints points =
-      two_impact_points(response_of<BasinResponse>(asked, asked.call.responses.front()).basin);
-  return static_cast<double>(points.symmetric) / static_cast<double>(points.all);
 }
 
 // Returns the relative difference of the power lost in impacts from that of the closed form, of whose two
@@ -187,60 +128,105 @@ double power_error(const Scene& scene, double impact_power) {
   return least;
 }
 
-double two_impact_error(const Asked& asked) {
-  std::vector<double> errors;
-  for (const std::string& name : asked.call.responses) {
-    const auto& response = response_of<SweepResponse>(asked, name);
-    const auto add = [&](std::int64_t i, const SteadyState& up, const SteadyState& down) {
-      const Scene scene = response.axis.at(response.scene, i);
-      // The closed form uses the linear response, which does not exist at resonance without damping.
-      if (scene.force_frequency == 1 && scene.damping_ratio == 0) return;
-      for (const SteadyState* each : {&up, &down})
-        if (each->period == 1 && each->symmetric && each->impacts == ImpactCounts{1, 1})
-          errors.push_back(power_error(scene, each->means->impact_power));
-    };
-    for (const Sweep& sweep : response.sweeps) for_each_value(sweep, add);
-  }
-  return most(errors);
-}
-
 }  // namespace
 
 std::vector<Measure> steady_measures() {
   return {
-      {"steady_amplitude_falling_percent", amplitude_error_percent<falling, mean>,
+      {"steady_amplitude_falling_percent",
        "relative deviation of the largest steady amplitude, reached with the force falling, from that "
        "predicted by the decay (M14.9), mean over the forces that have a prediction in [from, to], in "
        "percent; for each start of the sweeps, by each decay",
+       amplitude_error_percent<falling, mean>, numbers("from", "to"), scenes(1, 1), responses(1, 8)},
+      {"steady_amplitude_falling_worst_percent", "the largest of these deviations",
+       amplitude_error_percent<falling, most>, numbers("from", "to"), scenes(1, 1), responses(1, 8)},
+      {"steady_amplitude_rising_percent", "the mean with the force rising",
+       amplitude_error_percent<rising, mean>, numbers("from", "to"), scenes(1, 1), responses(1, 8)},
+      {"steady_amplitude_rising_worst_percent", "the largest of these", amplitude_error_percent<rising, most>,
        numbers("from", "to"), scenes(1, 1), responses(1, 8)},
-      {"steady_amplitude_falling_worst_percent", amplitude_error_percent<falling, most>,
-       "the largest of these deviations", numbers("from", "to"), scenes(1, 1), responses(1, 8)},
-      {"steady_amplitude_rising_percent", amplitude_error_percent<rising, mean>,
-       "the mean with the force rising", numbers("from", "to"), scenes(1, 1), responses(1, 8)},
-      {"steady_amplitude_rising_worst_percent", amplitude_error_percent<rising, most>, "the largest of these",
-       numbers("from", "to"), scenes(1, 1), responses(1, 8)},
-      {"force_limit_ratio", force_limit_ratio,
+      {"force_limit_ratio",
        "rising force at which the largest steady amplitude exceeds that of the largest F of the decay, A in "
        "[from, to], divided by this F (M14.7)",
+       [](const Asked& asked) -> Spread {
+         return over_starts(asked, rising, [](const Curve& found, const Curve& needed) {
+           if (needed.x.empty()) return no_number;
+           for (std::size_t i = 0; i + 1 < found.x.size(); ++i) {
+             if (!(found.y[i] <= needed.x[0] && found.y[i + 1] > needed.x[0])) continue;
+             const double part = (needed.x[0] - found.y[i]) / (found.y[i + 1] - found.y[i]);
+             return (found.x[i] + part * (found.x[i + 1] - found.x[i])) / needed.y[0];
+           }
+           return no_number;
+         });
+       },
        numbers("from", "to"), scenes(1, 1), responses(1, 8)},
-      {"force_jump_ratio", jump_ratio,
+      {"force_jump_ratio",
        "falling force at which the largest steady amplitude falls below 0.5, divided by the least F of the "
        "decay between from and the amplitude of its largest F in [from, to]",
+       [](const Asked& asked) -> Spread {
+         constexpr double half_of_the_clearance = 0.5;
+         return over_starts(asked, falling, [](const Curve& found, const Curve& needed) {
+           std::size_t least = found.x.size();  // index of the least force from which on that holds
+           while (least > 0 && found.y[least - 1] >= half_of_the_clearance) --least;
+           if (needed.y.empty() || least == 0 || least == found.x.size()) return no_number;
+           return (found.x[least - 1] + found.x[least]) / 2 / *std::ranges::min_element(needed.y);
+         });
+       },
        numbers("from", "to"), scenes(1, 1), responses(1, 8)},
-      {"one_motion_share", one_motion_share,
+      {"one_motion_share",
        "share of the values of sweeps at which the rising and the falling way arrive at one amplitude "
        "(M12.8)",
+       [](const Asked& asked) {
+         const std::vector<const SweepResponse*> responses = sweeps_of(asked);
+         std::vector<double> shares;
+         for (std::size_t n = 0; n < responses.front()->sweeps.size(); ++n) {
+           std::vector<double> same;
+           for (const SweepResponse* response : responses)
+             for (std::size_t i = 0; i < response->sweeps[n].up.size(); ++i) {
+               const SteadyState &up = response->sweeps[n].up[i], &down = response->sweeps[n].down[i];
+               const double a = amplitude_of(up), b = amplitude_of(down);
+               const bool differ = amplitudes_differ(a, up.amplitude_scatter, b, down.amplitude_scatter);
+               same.push_back(a == a && b == b ? double(!differ) : no_number);
+             }
+           shares.push_back(mean(same));
+         }
+         return spread_of(shares);
+       },
        numbers(), scenes(0, 0), responses(1, 8)},
-      {"two_impact_share", two_impact_share,
+      {"two_impact_share",
        "share of the points of a map that end in a motion with two equally spaced impacts in a period of the "
        "force, one on each wall",
+       [](const Asked& asked) {
+         const Basin& basin = response_of<BasinResponse>(asked, asked.call.responses.front()).basin;
+         return static_cast<double>(two_impact_points(basin).symmetric) /
+                static_cast<double>(basin.attractor.size());
+       },
        numbers(), scenes(0, 0), responses(1, 1)},
-      {"equally_spaced_share", equally_spaced_share,
-       "share of these among all with one impact on each wall in a period", numbers(), scenes(0, 0),
-       responses(1, 1)},
-      {"two_impact_error", two_impact_error,
+      {"equally_spaced_share", "share of these among all with one impact on each wall in a period",
+       [](const Asked& asked) {
+         const TwoImpactPoints points =
+             two_impact_points(response_of<BasinResponse>(asked, asked.call.responses.front()).basin);
+         return static_cast<double>(points.symmetric) / static_cast<double>(points.all);
+       },
+       numbers(), scenes(0, 0), responses(1, 1)},
+      {"two_impact_error",
        "largest relative deviation of the power that impacts take out of such a motion of sweeps from that "
        "of the closed form (M13.18)",
+       [](const Asked& asked) {
+         std::vector<double> errors;
+         for (const std::string& name : asked.call.responses) {
+           const auto& response = response_of<SweepResponse>(asked, name);
+           for (std::int64_t i = 0; i < response.axis.count; ++i) {
+             const Scene scene = response.axis.at(response.scene, i);
+             // The closed form uses the linear response, which does not exist at resonance without damping.
+             if (scene.force_frequency == 1 && scene.damping_ratio == 0) continue;
+             for (const Sweep& sweep : response.sweeps)
+               for (const SweepWay way : {rising, falling})
+                 if (const SteadyState& each = (sweep.*way)[std::size_t(i)];
+                     each.period == 1 && each.symmetric && each.impacts == ImpactCounts{1, 1})
+                   errors.push_back(power_error(scene, each.means->impact_power));
+           }
+         }
+         return most(errors);
+       },
        numbers(), scenes(0, 0), responses(1, 8)},
   };
 }

@@ -19,7 +19,6 @@ namespace {
 
 // Tests by their names in CTest.
 constexpr std::string_view from_reference = "reference: tables, figures and sums are what the program makes";
-constexpr std::string_view of_analysis = "analysis", of_columns = "columns";
 
 enum class Change { larger, smaller, added };
 
@@ -54,147 +53,118 @@ Trials whole_number_trials(double value, double step, double last) {
   }
 }
 
-void keep_valid(Trials& trials, const std::function<bool(double)>& is_valid) {
+// Returns them up to the last before one that is not valid; absent if there is none.
+template <class IsValid>
+std::optional<Trials> valid(Trials trials, IsValid is_valid) {
   const auto end = std::ranges::find_if(trials.all, [&](const Trial& each) { return !is_valid(each.value); });
   trials.all.erase(end, trials.all.end());
+  if (trials.all.empty()) return std::nullopt;
   std::erase_if(trials.first, [&](std::size_t i) { return i >= trials.all.size(); });
-  if (!trials.all.empty() && (trials.first.empty() || trials.first.back() + 1 < trials.all.size()))
+  if (trials.first.empty() || trials.first.back() + 1 < trials.all.size())
     trials.first.push_back(trials.all.size() - 1);
+  return trials;
 }
 
-// A number of a scene; the two stops are numbers as well.
-struct Changeable {
-  std::string name;
-  SceneNumber number{};
-  std::optional<double> Scene::*stop = nullptr;
-
-  std::optional<double> of(const Scene& scene) const { return stop ? scene.*stop : number.in(scene); }
-  void set(Scene& scene, double value) const {
-    if (stop)
-      scene.*stop = value;
-    else
-      number.in(scene) = value;
-  }
-};
-std::vector<Changeable> changeable(const Scene& scene) {
-  std::vector<Changeable> all;
-  for (const NamedSceneNumber& each : numbers_of(scene)) all.push_back({each.name, each.number});
-  all.push_back({.name = "until_time", .stop = &Scene::until_time});
-  all.push_back({.name = "until_amplitude", .stop = &Scene::until_amplitude});
-  return all;
-}
-
-std::vector<PowerNumber> numbers_of(const std::string& name, const Scene& scene) {
+// Returns those of a scene; the two stops are numbers as well.
+std::vector<PowerNumber> numbers_of(const std::string& of, const Scene& scene) {
   std::vector<PowerNumber> numbers;
-  for (const Changeable& each : changeable(scene)) {
-    if (!each.of(scene)) continue;                                               // a stop that is not given
-    if (each.name == "force_frequency" && scene.force_amplitude == 0) continue;  // without a force
-    const double value = *each.of(scene);
-    PowerNumber number{.of = name, .name = each.name, .value = value, .noticed_by = from_reference};
+  const auto add = [&](const std::string& name, double value, const PowerNumber::Set& set) {
     const auto is_valid = [&](double becomes) {
-      Scene changed = scene;
-      each.set(changed, becomes);
-      return problems_of(changed).empty();
+      PowerState changed{.scene = scene};
+      set(changed, becomes);
+      return problems_of(changed.scene).empty();
     };
+    PowerNumber number{.of = of, .name = name, .value = value, .noticed_by = from_reference, .set = set};
     if (value == 0) {
-      number.up = two_digit_trials(0, Change::added, -5, 1);
+      number.up = valid(two_digit_trials(0, Change::added, -5, 1), is_valid);
     } else {
-      number.up = two_digit_trials(value, Change::larger, thousandths, to_four_times);
-      number.down = two_digit_trials(value, Change::smaller, thousandths, to_four_times);
-    }
-    for (auto* trials : {&number.up, &number.down}) {
-      if (!*trials) continue;
-      keep_valid(**trials, is_valid);
-      if ((*trials)->all.empty()) trials->reset();
+      number.up = valid(two_digit_trials(value, Change::larger, thousandths, to_four_times), is_valid);
+      number.down = valid(two_digit_trials(value, Change::smaller, thousandths, to_four_times), is_valid);
     }
     numbers.push_back(std::move(number));
+  };
+  for (const NamedSceneNumber& each : numbers_of(scene)) {
+    if (each.name == "force_frequency" && scene.force_amplitude == 0) continue;  // without a force
+    add(each.name, each.number.in(scene),
+        [number = each.number](PowerState& state, double value) { number.in(state.scene) = value; });
   }
+  if (scene.until_time)
+    add("until_time", *scene.until_time,
+        [](PowerState& state, double value) { state.scene.until_time = value; });
+  if (scene.until_amplitude)
+    add("until_amplitude", *scene.until_amplitude,
+        [](PowerState& state, double value) { state.scene.until_amplitude = value; });
   return numbers;
 }
 
-// Options that verdicts depend on, besides the runs.
-struct Settings {
-  EnsembleOptions ensemble;
-  AnalysisOptions analysis;
-};
-using SettingsNumber = std::variant<int*, std::int64_t*, double*>;
+using In = std::variant<int*, std::int64_t*, double*>;
 struct AnalysisNumber {
   std::string_view name;
-  SettingsNumber (*in)(Settings&);
+  In (*in)(PowerState&);
   double least, most,
       step;  // whole numbers in steps of this; 0: any number, by changes from 0.001 to 1000
   std::string_view noticed_by;
-
-  double of(Settings settings) const {
-    return std::visit([](const auto* number) { return double(*number); }, in(settings));
-  }
-  void set(Settings& settings, double value) const {
-    std::visit([&](auto* number) { *number = static_cast<std::decay_t<decltype(*number)>>(value); },
-               in(settings));
-  }
 };
 constexpr std::string_view falls_evenly =
     "measures_of_runs: measures of the loss factor are what they are for amplitudes that fall evenly";
 constexpr std::array<AnalysisNumber, 9> analysis_numbers{
-    {{"averaged_over", [](Settings& s) -> SettingsNumber { return &s.analysis.loss.half_cycles; }, 10, 18, 2,
+    {{"averaged_over", [](PowerState& s) -> In { return &s.analysis.loss.half_cycles; }, 10, 18, 2,
       falls_evenly},
-     {"smoothed_over", [](Settings& s) -> SettingsNumber { return &s.analysis.smoother_loss.half_cycles; },
-      10, 18, 2, falls_evenly},
-     {"bins", [](Settings& s) -> SettingsNumber { return &s.analysis.bins; }, 1, 48, 1,
+     {"smoothed_over", [](PowerState& s) -> In { return &s.analysis.smoother_loss.half_cycles; }, 10, 18, 2,
+      falls_evenly},
+     {"bins", [](PowerState& s) -> In { return &s.analysis.bins; }, 1, 48, 1,
       "measures: the spread is averaged over twelve bins, equal in the logarithm"},
-     {"stuck_contact_times",
-      [](Settings& s) -> SettingsNumber { return &s.analysis.regimes.stuck_contact_times; }, 0, 0, 0,
-      "regimes: a compliant contact is stuck once it outlasts a full period, a rigid one always"},
+     {"stuck_contact_times", [](PowerState& s) -> In { return &s.analysis.regimes.stuck_contact_times; }, 0,
+      0, 0, "regimes: a compliant contact is stuck once it outlasts a full period, a rigid one always"},
      {"bounce_down_half_cycles",
-      [](Settings& s) -> SettingsNumber { return &s.analysis.regimes.bounce_down_half_cycles; }, 1, 16, 1,
+      [](PowerState& s) -> In { return &s.analysis.regimes.bounce_down_half_cycles; }, 1, 16, 1,
       "regimes: bounce-down ends with the first unbroken series of stuck half cycles"},
-     {"window_half_cycles",
-      [](Settings& s) -> SettingsNumber { return &s.analysis.regimes.window_half_cycles; }, 1, 32, 1,
-      "regimes: regular windows are maximal series of equal counts"},
-     {"failure_half_cycles",
-      [](Settings& s) -> SettingsNumber { return &s.analysis.regimes.failure_half_cycles; }, 1, 12, 1,
-      "regimes: impact failure is for good where no three half cycles bring three impacts any more"},
-     {"members", [](Settings& s) -> SettingsNumber { return &s.ensemble.members; }, 1, 64, 1, from_reference},
-     {"ensemble_step", [](Settings& s) -> SettingsNumber { return &s.ensemble.step; }, 0, 0, 0,
-      from_reference}}};
+     {"window_half_cycles", [](PowerState& s) -> In { return &s.analysis.regimes.window_half_cycles; }, 1, 32,
+      1, "regimes: regular windows are maximal series of equal counts"},
+     {"failure_half_cycles", [](PowerState& s) -> In { return &s.analysis.regimes.failure_half_cycles; }, 1,
+      12, 1, "regimes: impact failure is for good where no three half cycles bring three impacts any more"},
+     {"members", [](PowerState& s) -> In { return &s.ensemble.members; }, 1, 64, 1, from_reference},
+     {"ensemble_step", [](PowerState& s) -> In { return &s.ensemble.step; }, 0, 0, 0, from_reference}}};
 
-std::vector<PowerNumber> numbers_of(const Settings& settings) {
+// Returns those of the analysis and of the columns; `state` has nothing changed.
+std::vector<PowerNumber> numbers_of(PowerState state) {
   std::vector<PowerNumber> numbers;
+  const auto any = [](double) { return true; };
   for (const AnalysisNumber& each : analysis_numbers) {
-    PowerNumber number{.of = std::string(of_analysis),
-                       .name = std::string(each.name),
-                       .value = each.of(settings),
-                       .noticed_by = each.noticed_by};
-    if (each.step == 0) {
-      number.up = two_digit_trials(number.value, Change::larger, thousandths, 1000);
-      number.down = two_digit_trials(number.value, Change::smaller, thousandths, 1000);
-    } else {
-      number.up = whole_number_trials(number.value, each.step, each.most);
-      number.down = whole_number_trials(number.value, -each.step, each.least);
-    }
-    for (auto* trials : {&number.up, &number.down})
-      if ((*trials)->all.empty()) trials->reset();
-    numbers.push_back(std::move(number));
+    const double value = std::visit([](const auto* number) { return double(*number); }, each.in(state));
+    const bool whole = each.step != 0;
+    numbers.push_back(
+        {.of = "analysis",
+         .name = std::string(each.name),
+         .value = value,
+         .up = valid(whole ? whole_number_trials(value, each.step, each.most)
+                           : two_digit_trials(value, Change::larger, thousandths, 1000),
+                     any),
+         .down = valid(whole ? whole_number_trials(value, -each.step, each.least)
+                             : two_digit_trials(value, Change::smaller, thousandths, 1000),
+                       any),
+         .noticed_by = each.noticed_by,
+         .set = [in = each.in](PowerState& changed, double becomes) {
+           std::visit([&](auto* number) { *number = static_cast<std::decay_t<decltype(*number)>>(becomes); },
+                      in(changed));
+         }});
   }
   for (const RecordedColumn& column : recorded_columns())
     numbers.push_back(
-        {.of = std::string(of_columns),
+        {.of = "columns",
          .name = std::string(column.name),
          .value = 1,
          .up = two_digit_trials(1, Change::larger, thousandths, to_four_times),
          .down = two_digit_trials(1, Change::smaller, thousandths, to_four_times),
-         .noticed_by = "recorded: all that the exact engine records is what a plain integration finds"});
+         .noticed_by = "recorded: all that the exact engine records is what a plain integration finds",
+         .set = [column](PowerState& changed, double factor) {
+           changed.wrong = {column, factor};
+         }});
   return numbers;
 }
 
-const auto by_name = [](const auto& table, std::string_view name) -> const auto& {
-  const auto found = std::ranges::find_if(table, [&](const auto& each) { return each.name == name; });
-  if (found == table.end()) throw std::logic_error("no number is called " + std::string(name));
-  return *found;
-};
-
-Runs runs_with(const PowerInput& input, const Settings& settings, std::optional<WrongColumn> wrong = {}) {
-  Runs runs(std::nullopt, settings.ensemble, input.further, settings.analysis, wrong, input.asked);
+Runs runs_with(const PowerInput& input, const PowerState& state) {
+  Runs runs(std::nullopt, state.ensemble, input.further, state.analysis, state.wrong, input.asked);
   for (const auto& [scene, run] : input.runs) runs.put(scene, run);
   for (const auto& [name, response] : input.responses) runs.put(name, response);
   for (const auto& [scene, run] : input.runs) runs.ensemble(scene);
@@ -209,7 +179,7 @@ std::vector<Verdict> verdicts_of(const std::vector<Claim>& claims, Runs& runs) {
 }
 
 bool looks_at(const Claim& claim, const PowerNumber& number, const PowerInput& input) {
-  if (number.of == of_analysis || number.of == of_columns) return true;
+  if (!input.runs.contains(number.of)) return true;
   return std::ranges::any_of(claim.measure.scenes,
                              [&](const std::string& name) {
                                const CatalogueRun* const run = find_run(input.further, name);
@@ -264,10 +234,10 @@ std::vector<Claim> claims_on_scenes_of(const Catalogue& catalogue, std::vector<C
 std::vector<std::string> unsettled_claims(const PowerInput& input, std::int64_t ensembles) {
   std::vector<std::vector<Verdict>> verdicts(static_cast<std::size_t>(ensembles) + 1);
   for_each_index(ensembles + 1, input.ensemble.threads, [&](std::int64_t i) {
-    Settings settings{input.ensemble, {}};
-    settings.ensemble.threads = 1;
-    settings.ensemble.seed += static_cast<std::uint64_t>(i);
-    Runs runs = runs_with(input, settings);
+    PowerState state{.ensemble = input.ensemble};
+    state.ensemble.threads = 1;
+    state.ensemble.seed += static_cast<std::uint64_t>(i);
+    Runs runs = runs_with(input, state);
     verdicts[static_cast<std::size_t>(i)] = verdicts_of(input.claims, runs);
   });
   std::vector<std::string> ids;
@@ -282,32 +252,25 @@ Power::Power(PowerInput input)
   // The threads are for the searches; each ensemble uses one.
   input_.ensemble.threads = 1;
   keep_first_starts(input_);
-  const Settings settings{input_.ensemble, {}};
-  unchanged_ = runs_with(input_, settings);
+  const PowerState state{.ensemble = input_.ensemble};
+  unchanged_ = runs_with(input_, state);
   std::erase_if(input_.claims, [&](const Claim& claim) {
     return std::ranges::find(input_.left_out, claim.id) != input_.left_out.end();
   });
   verdicts_ = verdicts_of(input_.claims, unchanged_);
   for (const auto& [name, run] : input_.runs)
     for (PowerNumber& number : numbers_of(name, run.scene)) numbers_.push_back(std::move(number));
-  for (PowerNumber& number : numbers_of(settings)) numbers_.push_back(std::move(number));
+  for (PowerNumber& number : numbers_of(state)) numbers_.push_back(std::move(number));
 }
 
 Runs Power::changed(const PowerNumber& number, double value) const {
-  if (number.of == of_columns)
-    return runs_with(input_, {input_.ensemble, {}},
-                     WrongColumn{by_name(recorded_columns(), number.name), value});
-  if (number.of == of_analysis) {
-    Settings settings{input_.ensemble, {}};
-    by_name(analysis_numbers, number.name).set(settings, value);
-    return runs_with(input_, settings);
-  }
+  PowerState state{.ensemble = input_.ensemble};
+  const auto of_scene = input_.runs.find(number.of);
+  if (of_scene != input_.runs.end()) state.scene = of_scene->second.scene;
+  number.set(state, value);
+  if (of_scene == input_.runs.end()) return runs_with(input_, state);
   Runs runs = unchanged_;
-  const Run& run = input_.runs.at(number.of);
-  Scene scene = run.scene;
-  const std::vector<Changeable> numbers = changeable(scene);
-  by_name(numbers, number.name).set(scene, value);
-  runs.put(number.of, simulate(scene, run.engine, {.impacts = true, .contacts = true}));
+  runs.put(number.of, simulate(state.scene, of_scene->second.engine, {.impacts = true, .contacts = true}));
   return runs;
 }
 

@@ -43,12 +43,24 @@ struct Direction {
   std::optional<Turn> turn = std::nullopt;
 };
 
+// What the numbers are parts of: a scene, the options of ensembles and of the analysis, and a column that is
+// multiplied by a factor.
+struct PowerState {
+  Scene scene{};
+  EnsembleOptions ensemble{};
+  AnalysisOptions analysis{};
+  std::optional<WrongColumn> wrong{};
+};
+
 struct PowerNumber {
+  using Set = std::function<void(PowerState&, double value)>;
+
   std::string of;    // a scene's name, "analysis" or "columns"
   std::string name;  // for example "mass_ratio"
   double value = 0;
   std::optional<Trials> up = {}, down = {};  // absent: there is no larger, or smaller, valid value
   std::string_view noticed_by;               // the test that notices a change which turns no verdict
+  Set set;
 };
 struct PowerRow {
   PowerNumber number;

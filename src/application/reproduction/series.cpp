@@ -6,7 +6,6 @@
 #include <stdexcept>
 #include <variant>
 
-#include "application/reproduction/series_blocks.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/engine_options.hpp"

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "application/reproduction/series_blocks.hpp"
+#include "application/reproduction/series.hpp"
 #include "impact_damper/analysis/damper_sets.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/theory.hpp"

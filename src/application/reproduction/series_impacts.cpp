@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "application/reproduction/series_blocks.hpp"
+#include "application/reproduction/series.hpp"
 #include "impact_damper/analysis/regimes.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/base/number_text.hpp"

@@ -1,12 +1,13 @@
 // Figures 8-14: the averaged loss factor over amplitude, and the closed forms it is held against.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
 #include <span>
 
-#include "application/reproduction/series_blocks.hpp"
+#include "application/reproduction/series.hpp"
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
 #include "impact_damper/analysis/regimes.hpp"
@@ -18,21 +19,14 @@ namespace impact_damper {
 namespace {
 
 std::string meaning(LossOrdinate which) {
-  switch (which) {
-    case LossOrdinate::eta:
-      return "eta = -2 A'/A, per radian";
-    case LossOrdinate::specific:
-      return "eta / nu";
-    case LossOrdinate::specific_secondary:
-      return "(eta - 2 zeta) / nu";
-    case LossOrdinate::amplitude_times:
-      return "A (eta - 2 zeta) / nu, A divided by the clearance";
-    case LossOrdinate::by_restitution:
-      return "A (eta - 2 zeta) / (nu (1 - e)), A divided by the clearance";
-    case LossOrdinate::carried:
-      return "A (eta - 2 zeta / (1 + nu)) / nu, A divided by the clearance";
-  }
-  return "";
+  constexpr std::array<const char*, 6> meanings{
+      "eta = -2 A'/A, per radian",
+      "eta / nu",
+      "(eta - 2 zeta) / nu",
+      "A (eta - 2 zeta) / nu, A divided by the clearance",
+      "A (eta - 2 zeta) / (nu (1 - e)), A divided by the clearance",
+      "A (eta - 2 zeta / (1 + nu)) / nu, A divided by the clearance"};
+  return meanings.at(static_cast<std::size_t>(which));
 }
 
 // Returns last + 1 amplitudes, equally spaced in the logarithm, both ends included.

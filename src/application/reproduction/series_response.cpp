@@ -1,11 +1,11 @@
 // Figures C, D and E: steady motions under a force, over its frequency and its amplitude.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 
-#include "application/reproduction/curve.hpp"
-#include "application/reproduction/series_blocks.hpp"
+#include "application/reproduction/measures_parts.hpp"
+#include "application/reproduction/series.hpp"
 #include "impact_damper/analysis/design.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/math/elementary.hpp"
@@ -101,16 +101,12 @@ void add_branches(Panel& panel, const OrbitsResponse& response) {
   }
 }
 
-InputError unusable(const Figure& figure, const FigureResponse& source, const std::string& why) {
-  return unusable(figure, source.file, why);
-}
-
 // Returns the response as one of a kind, which `wanted` names.
 template <class Kind>
 const Kind& as(const Figure& figure, const FigureResponse& source) {
   const auto* const response = std::get_if<Kind>(&source.response);
   if (!response)
-    throw unusable(figure, source,
+    throw unusable(figure, source.file,
                    "must be a " + std::string(Kind::kind) + ", got " + std::string(kind_of(source.response)));
   return *response;
 }
@@ -225,39 +221,37 @@ void add_map_blocks(const Figure& figure, const FigureResponse& source, Table& t
   const BasinResponse& response = as<BasinResponse>(figure, source);
   const double nu = response.scene.damper().mass_ratio;
   const Basin& basin = response.basin;
-  // Returns what a point of the map shows, in the order of the legend.
-  const auto kind_at = [&](std::size_t i) -> std::pair<std::string, std::string> {
-    if (basin.attractor[i] == undecided) return {"irregular", "nothing periodic found"};
+  // What a point of the map shows, in the order of the legend.
+  enum Kind : std::size_t { symmetric, asymmetric, two, three, other, irregular, idle };
+  constexpr std::array<std::pair<const char*, const char*>, 7> kinds{
+      {{"one-symmetric", "one impact on each wall, symmetric"},
+       {"one-asymmetric", "one on each wall, not symmetric"},
+       {"each-2", "2 on each wall"},
+       {"each-3", "3 on each wall"},
+       {"other", "other periodic motions"},
+       {"irregular", "nothing periodic found"},
+       {"idle", "never struck"}}};
+  const auto kind_at = [&](std::size_t i) {
+    if (basin.attractor[i] == undecided) return irregular;
     const Attractor& each = basin.attractors[std::size_t(basin.attractor[i])];
-    if (each.idle) return {"idle", "never struck"};
-    if (each.period == 1 && each.impacts[0] == each.impacts[1]) {
-      const std::string count = std::to_string(each.impacts[0]);
-      if (each.impacts[0] == 1)
-        return each.symmetric ? std::pair("one-symmetric", "one impact on each wall, symmetric")
-                              : std::pair("one-asymmetric", "one on each wall, not symmetric");
-      if (each.impacts[0] <= 3) return {"each-" + count, count + " on each wall"};
-    }
-    return {"other", "other periodic motions"};
+    if (each.idle) return idle;
+    if (each.period != 1 || each.impacts[0] != each.impacts[1]) return other;
+    if (each.impacts[0] == 1) return each.symmetric ? symmetric : asymmetric;
+    return each.impacts[0] == 2 ? two : each.impacts[0] == 3 ? three : other;
   };
-  const std::vector<std::string> order{"one-symmetric", "one-asymmetric", "each-2", "each-3",
-                                       "other",         "irregular",      "idle"};
-  std::map<std::string, std::pair<std::string, Points>> regimes;
+  std::array<Points, kinds.size()> regimes;
   for (std::size_t i = 0; i < basin.attractor.size(); ++i) {
-    const auto [name, legend] = kind_at(i);
-    auto& [heading, points] = regimes[name];
-    heading = legend;
     const std::int64_t n = std::int64_t(i);
-    points.add(response.first.value(n % response.first.count),
-               response.second.value(n / response.first.count) / nu);
+    regimes[kind_at(i)].add(response.first.value(n % response.first.count),
+                            response.second.value(n / response.first.count) / nu);
   }
   const auto step = [](const Axis& axis) { return (axis.to - axis.from) / double(axis.count - 1); };
   table.add({.name = "cell",
              .notes = {"how far apart the points of the map are"},
              .columns = {{"width", of_frequency, {step(response.first)}},
                          {"height", of_force, {step(response.second) / nu}}}});
-  for (const std::string& name : order)
-    if (const auto found = regimes.find(name); found != regimes.end())
-      add_block(table, name, of_frequency, found->second.first, of_force, found->second.second);
+  for (std::size_t kind = 0; kind < kinds.size(); ++kind)
+    add_block(table, kinds[kind].first, of_frequency, kinds[kind].second, of_force, regimes[kind]);
 }
 
 }  // namespace impact_damper
