@@ -16,9 +16,7 @@
 
 #include "findings.hpp"
 #include "impact_damper/io/file_output.hpp"
-#include "peers/peers.hpp"
 #include "reference.hpp"
-#include "report.hpp"
 
 namespace impact_damper::bench {
 namespace {

@@ -124,6 +124,24 @@ struct CountedRun {
   std::int64_t impacts = 0;
   std::vector<double> amplitude;  // of its half cycles
 };
+// What is given out by impact: its key in JSON, its heading on the page, which shows large counts without
+// decimals.
+struct CountInfo {
+  const char *name, *heading;
+  std::int64_t Counts::*count;
+  bool many = false;
+  double of(const CountedRun& run) const { return double(run.counts.*count) / double(run.impacts); }
+};
+inline constexpr CountInfo per_impact[] = {{"predictions", "predictions", &Counts::predictions},
+                                           {"searches", "searches", &Counts::searches},
+                                           {"evaluations", "evaluations", &Counts::evaluations},
+                                           {"steps", "steps", &Counts::steps},
+                                           {"sincos", "sincos", &Counts::sincos},
+                                           {"exponentials", "exp", &Counts::exponentials},
+                                           {"arctangents", "atan", &Counts::arctangents},
+                                           {"square_roots", "sqrt", &Counts::square_roots},
+                                           {"divisions", "divisions", &Counts::divisions, true},
+                                           {"other_arithmetic", "+ − ×", &Counts::other_arithmetic, true}};
 CountedRun count(const Scene& scene, const Exact& options);
 CountedRun count(const Scene& scene, const Restitution& options);
 

@@ -1,4 +1,5 @@
-// Everything one run of the bench has found, and its results beside their regression bounds.
+// Everything one run of the bench has found, its results beside their regression bounds, and what it writes
+// of them.
 #pragma once
 
 #include <optional>
@@ -65,5 +66,18 @@ struct Result {
   bool within() const { return measured && (at_most ? *measured <= bound : *measured >= bound); }
 };
 std::vector<Result> results_of(const Findings& findings);
+
+// What a run of the bench leaves: a JSON with every number, one with the results alone, tables for gnuplot, a
+// page for people.
+std::string report_json(const Findings& findings);
+std::string results_json(const Findings& findings);
+
+// One block for each curve, "S1-exact": error, median and quartiles of the run time in reference operations,
+// setting.
+std::string time_error_table(const Findings& findings);
+// One block for each sweep, "exact-impacts": at, reference operations per impact, residual.
+std::string sweep_table(const Findings& findings);
+
+std::string report_page(const Findings& findings);
 
 }  // namespace impact_damper::bench

@@ -1,13 +1,14 @@
 // What programs read of the bench: JSON and the tables that gnuplot draws.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "findings.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/provenance.hpp"
 #include "reference.hpp"
-#include "report.hpp"
 
 namespace impact_damper::bench {
 namespace {
@@ -37,9 +38,7 @@ Json json_of(const Reference& reference) {
   if (reference.loss_curve) {
     json["error_is"] =
         "rms over amplitudes of the loss factor, mean of 128 releases, by the mean of 896, less 1";
-    json["scatter_of_the_ensemble"] = {{"median", reference.loss_curve->scatter},
-                                       {"lower_quartile", reference.loss_curve->lower},
-                                       {"upper_quartile", reference.loss_curve->upper}};
+    json["scatter_of_the_ensemble"] = json_of(reference.loss_curve->scatter);
     return json;
   }
   json["error_is"] = "largest difference of a half-cycle amplitude, by epsilon";
@@ -66,29 +65,12 @@ Json json_of(const Curve& curve) {
 }
 
 Json json_of(const Counting& counting) {
-  const Counts& c = counting.run.counts;
-  const double n = double(counting.run.impacts);
-  return {{"scene", counting.scene},
-          {"engine", counting.engine},
-          {"impacts", counting.run.impacts},
-          {"found_by",
-           {{"series", c.found[0]},
-            {"correction", c.found[1]},
-            {"search", c.found[2]},
-            {"short_contact_map", c.found[3]},
-            {"slow_mode", c.found[4]},
-            {"contact_search", c.found[5]}}},
-          {"per_impact",
-           {{"predictions", double(c.predictions) / n},
-            {"searches", double(c.searches) / n},
-            {"evaluations", double(c.evaluations) / n},
-            {"steps", double(c.steps) / n},
-            {"sincos", double(c.sincos) / n},
-            {"exponentials", double(c.exponentials) / n},
-            {"arctangents", double(c.arctangents) / n},
-            {"square_roots", double(c.square_roots) / n},
-            {"divisions", double(c.divisions) / n},
-            {"other_arithmetic", double(c.other_arithmetic) / n}}}};
+  Json json{{"scene", counting.scene}, {"engine", counting.engine}, {"impacts", counting.run.impacts}};
+  constexpr std::array<const char*, ways_to_find> ways{
+      "series", "correction", "search", "short_contact_map", "slow_mode", "contact_search"};
+  for (std::size_t i = 0; i < ways.size(); ++i) json["found_by"][ways[i]] = counting.run.counts.found[i];
+  for (const CountInfo& info : per_impact) json["per_impact"][info.name] = info.of(counting.run);
+  return json;
 }
 
 Json json_of(const Sweep& sweep) {
@@ -230,7 +212,8 @@ std::string time_error_table(const Findings& found) {
     if (!reference.loss_curve) continue;
     text += "\n\n# " + reference.scene +
             (reference.walls == Walls::compliant ? "-scatter" : "-scatter-rigid") + "\nlower median upper\n";
-    add_row(text, {reference.loss_curve->lower, reference.loss_curve->scatter, reference.loss_curve->upper});
+    const Spread& scatter = reference.loss_curve->scatter;
+    add_row(text, {scatter.lower, scatter.median, scatter.upper});
   }
   return text;
 }
@@ -239,9 +222,7 @@ std::string sweep_table(const Findings& found) {
   std::string text =
       "# What an impact costs, drawn by bench/cost.gp.\n"
       "# cost, lower, upper: median and quartiles, in reference operations; residual: of the energy balance, "
-      "relative, at "
-      "least "
-      "2^-53\n"
+      "relative, at least 2^-53\n"
       "# Parameters: " +
       parameters(found) + "\n";
   for (const Sweep& sweep : found.sweeps) {

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "findings.hpp"
 #include "impact_damper/io/provenance.hpp"
 #include "reference.hpp"
-#include "report.hpp"
 
 namespace impact_damper::bench {
 namespace {
@@ -14,6 +14,11 @@ std::string printed(const char* format, Numbers... numbers) {
   char text[128];
   std::snprintf(text, sizeof text, format, numbers...);
   return text;
+}
+
+// Of a spread, `scale` times: median, lower and upper quartile.
+std::string with_quartiles(const char* format, const Spread& spread, double scale = 1) {
+  return printed(format, scale * spread.median, scale * spread.lower, scale * spread.upper);
 }
 
 // Three digits, never an exponent where a person would not write one.
@@ -73,14 +78,13 @@ void add_times(std::string& page, const Findings& found) {
       "\n## Run time for an error\n\n"
       "![Run time against error, scene by scene](time_error.svg)\n\n"
       "Milliseconds, in brackets reference operations; —: the error is not reached. Interpolated between "
-      "settings on "
-      "straight lines in both logarithms. Errors: largest difference of a half-cycle amplitude, by the free "
-      "travel; S5: root mean square over amplitudes from 5 to 0.1 of the averaged loss factor, the "
-      "mean of 128 releases, by the mean of 896 of the engine in closed form, less 1.\n\n"
+      "settings on straight lines in both logarithms. Errors: largest difference of a half-cycle amplitude, "
+      "by the free travel; S5: root mean square over amplitudes from 5 to 0.1 of the averaged loss factor, "
+      "the mean of 128 releases, by the mean of 896 of the engine in closed form, less 1.\n\n"
       "That engine's own groups of 128 have such an error too: sampling scatter. Twice the upper quartile of "
-      "it is the "
-      "smallest error taken for a method's own, and where two settings are below it finer ones are left out. "
-      "At that error two rates are held against the fixed step of the paper, which does not locate events.\n";
+      "it is the smallest error taken for a method's own, and where two settings are below it finer ones are "
+      "left out. At that error two rates are held against the fixed step of the paper, which does not locate "
+      "events.\n";
   for (const BenchScene& scene : found.scenes) {
     if (scene.dampers > 0) continue;
     page += "\n### " + scene.name + ": " + scene.what + "\n\n";
@@ -93,10 +97,7 @@ void add_times(std::string& page, const Findings& found) {
                            "in", "at", "repeats"});
     for (const Curve& curve : found.curves) {
       if (curve.scene != scene.name) continue;
-      const Point* best = nullptr;
-      for (const Point& point : curve.points) {
-        if (point.error && !(best && *best->error <= *point.error)) best = &point;
-      }
+      const Point* best = curve.best();
       if (!best) {
         table.row({curve.contender, "—", "—", "no run that can be compared", "", "", ""});
         continue;
@@ -129,27 +130,22 @@ void add_references(std::string& page, const Findings& found) {
   for (const Reference& reference : found.references) {
     table.row({reference.scene + (reference.walls == Walls::compliant ? ", compliant" : ", rigid"),
                rounded(reference.from_long_double), rounded(reference.from_independent),
-               reference.loss_curve
-                   ? rounded(reference.loss_curve->scatter) + " (" + rounded(reference.loss_curve->lower) +
-                         " to " + rounded(reference.loss_curve->upper) + ")"
-                   : ""});
+               reference.loss_curve ? rounded(reference.loss_curve->scatter.median) + " (" +
+                                          rounded(reference.loss_curve->scatter.lower) + " to " +
+                                          rounded(reference.loss_curve->scatter.upper) + ")"
+                                    : ""});
   }
 }
 
 void add_counts(std::string& page, const Findings& found) {
   page += "\n## What an impact takes\n\nCounted, not timed, by impact.\n\n";
-  PageTable table(page, {"", "impacts", "predictions", "searches", "evaluations", "steps", "sincos", "exp",
-                         "atan", "sqrt", "divisions", "+ − ×"});
+  Cells headings{"", "impacts"};
+  for (const CountInfo& info : per_impact) headings.push_back(std::string(info.heading));
+  PageTable table(page, headings);
   for (const Counting& counting : found.counts) {
-    const Counts& c = counting.run.counts;
     Cells cells{counting.scene + " " + counting.engine, std::to_string(counting.run.impacts)};
-    for (const std::int64_t count : {c.predictions, c.searches, c.evaluations, c.steps, c.sincos,
-                                     c.exponentials, c.arctangents, c.square_roots}) {
-      cells.push_back(printed("%.2f", double(count) / double(counting.run.impacts)));
-    }
-    for (const std::int64_t count : {c.divisions, c.other_arithmetic}) {
-      cells.push_back(printed("%.0f", double(count) / double(counting.run.impacts)));
-    }
+    for (const CountInfo& info : per_impact)
+      cells.push_back(printed(info.many ? "%.0f" : "%.2f", info.of(counting.run)));
     table.row(cells);
   }
 }
@@ -157,8 +153,7 @@ void add_counts(std::string& page, const Findings& found) {
 void add_ways(std::string& page, const Findings& found) {
   page +=
       "\n## How an impact is found\n\nShares of all flights, and of all contacts ([what they "
-      "are](../../docs/mathematics.md"
-      "#78-the-cascade)).\n\n";
+      "are](../../docs/mathematics.md#78-the-cascade)).\n\n";
   PageTable table(page, {"", "flights: series", "closed form", "step by step", "contacts: map", "slow mode",
                          "step by step"});
   for (const Counting& counting : found.counts) {
@@ -240,10 +235,7 @@ void add_peers_of_dampers(std::string& page, const Findings& found) {
     const auto times = [&](const std::optional<double>& time) {
       return time ? rounded(*time / unit) + " x" : "—";
     };
-    const Point* best = nullptr;
-    for (const Point& point : curve.points) {
-      if (point.error && !(best && *best->error <= *point.error)) best = &point;
-    }
+    const Point* best = curve.best();
     table.row({curve.contender, rigid ? "rigid" : "compliant", std::to_string(scene->dampers),
                times(time_at(curve, 1e-6)), times(time_at(curve, 1e-9)),
                best                   ? rounded(*best->error)
@@ -259,15 +251,12 @@ void add_dampers(std::string& page, const Findings& found) {
       "\n## Several dampers\n\n"
       "S9: a free decay from x₀ = 3 to t = 101 with a list of dampers, which share ν = 0.02 and k = 10⁸ "
       "equally; e = 0.8, clearances from 1 up to below 1.7, the masses begin in the left halves of their "
-      "cavities. No mass comes to rest on a wall, and few contacts overlap. Amplitudes are compared up to "
-      "t = 30.5, before rounding decides; times are those of the whole run, by its impacts in nanoseconds, "
-      "in "
+      "cavities. No mass comes to rest on a wall, and few contacts overlap. Amplitudes are compared up to t "
+      "= 30.5, before rounding decides; times are those of the whole run, by its impacts in nanoseconds, in "
       "brackets reference operations.\n\n"
       "An impact may cost what it costs with one damper that is no list, and 20 ns for each further one. A "
-      "run "
-      "that is repeated as it is the processor learns: other releases in turn take up to a fifth longer with "
-      "2 "
-      "to 20 dampers ([tried.md](../tried.md)).\n\n";
+      "run that is repeated as it is the processor learns: other releases in turn take up to a fifth longer "
+      "with 2 to 20 dampers ([tried.md](../tried.md)).\n\n";
   add_own_costs_of_dampers(page, found);
   add_peers_of_dampers(page, found);
 }
@@ -289,8 +278,7 @@ void add_rest(std::string& page, const Findings& found) {
     page += "\n## Two threads\n\n" + std::to_string(speedup.members) +
             " decays from 6 to 0.03: " + rounded(speedup.one.median * 1e3) + " ms on one thread, " +
             rounded(speedup.two.median * 1e3) + " ms on two; " +
-            printed("%.2f (quartiles %.2f to %.2f)", speedup.ratio.median, speedup.ratio.lower,
-                    speedup.ratio.upper) +
+            with_quartiles("%.2f (quartiles %.2f to %.2f)", speedup.ratio) +
             " times as fast. Two ensembles side by side got " + printed("%.2f", speedup.side_by_side.median) +
             " cores; " + std::to_string(speedup.on_two_cores) + " of " + std::to_string(speedup.repeats) +
             " repeats were next to more than 1.9.\n";
@@ -305,26 +293,23 @@ void add_rest(std::string& page, const Findings& found) {
       };
       table.row({many.kept, each(many.engine), each(many.one), each(many.two),
                  printed("%.1f %%", 100 * many.analysis.median),
-                 printed("%.1f %% (%.1f to %.1f)", 100 * many.overhead.median, 100 * many.overhead.lower,
-                         100 * many.overhead.upper),
-                 printed("%.2f (%.2f to %.2f)", many.ratio.median, many.ratio.lower, many.ratio.upper)});
+                 with_quartiles("%.1f %% (%.1f to %.1f)", many.overhead, 100),
+                 with_quartiles("%.2f (%.2f to %.2f)", many.ratio)});
     }
   }
   if (!found.functions.empty()) {
     page +=
         "\n## Elementary functions\n\n"
         "One of a chain of dependent calls of the project's own and of the C library's, in nanoseconds, with "
-        "the "
-        "product and the sum that make it wait for the one before; largest errors in units of the last "
+        "the product and the sum that make it wait for the one before; largest errors in units of the last "
         "place.\n\n";
     PageTable table(page,
                     {"", "arguments", "own", "the C library's", "ratio (quartiles)", "error", "its error"});
     for (const FunctionCost& function : found.functions) {
-      table.row(
-          {function.name, function.arguments, printed("%.1f", function.own.median * 1e9),
-           printed("%.1f", function.library.median * 1e9),
-           printed("%.2f (%.2f to %.2f)", function.ratio.median, function.ratio.lower, function.ratio.upper),
-           printed("%.2f", function.own_error), printed("%.2f", function.library_error)});
+      table.row({function.name, function.arguments, printed("%.1f", function.own.median * 1e9),
+                 printed("%.1f", function.library.median * 1e9),
+                 with_quartiles("%.2f (%.2f to %.2f)", function.ratio), printed("%.2f", function.own_error),
+                 printed("%.2f", function.library_error)});
     }
   }
 
@@ -367,8 +352,7 @@ std::string report_page(const Findings& found) {
           (made.flags.empty() ? "" : ", " + std::string(made.flags)) + " |\n| commit | " +
           std::string(made.commit) +
           " |\n| reference operation | one of a chain of dependent `sincos` calls: " +
-          printed("%.1f ns (quartiles %.1f to %.1f)", found.reference_operation.median * 1e9,
-                  found.reference_operation.lower * 1e9, found.reference_operation.upper * 1e9) +
+          with_quartiles("%.1f ns (quartiles %.1f to %.1f)", found.reference_operation, 1e9) +
           " |\n| times | CPU time, median of 7 repeats or more, of 3 where a run takes over 0.4 s; for "
           "threads the clock on the wall |\n| disturbed | " +
           disturbances(found) + " |\n| in all | " + printed("%.0f s", found.seconds) + " |\n\n";

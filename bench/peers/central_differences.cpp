@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "peers/peers.hpp"
-#include "peers/row_book.hpp"
+#include "contender.hpp"
+#include "rows.hpp"
 
 namespace impact_damper::bench {
 namespace {

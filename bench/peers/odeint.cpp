@@ -2,7 +2,7 @@
 
 #include <boost/version.hpp>
 
-#include "peers/peers.hpp"
+#include "contender.hpp"
 
 namespace impact_damper::bench {
 namespace {

@@ -13,7 +13,7 @@
 #include <stdexcept>
 
 #include "peers/hybrid_system.hpp"
-#include "peers/row_book.hpp"
+#include "rows.hpp"
 
 namespace impact_damper::bench {
 

@@ -3,8 +3,8 @@
 #include <boost/multiprecision/float128.hpp>
 #endif
 
+#include "contender.hpp"
 #include "peers/odeint.hpp"
-#include "peers/peers.hpp"
 
 #ifdef HAVE_FLOAT128
 // What odeint's norms are made of; it knows by itself only of built-in numbers and of containers.

@@ -1,7 +1,7 @@
-#include "peers/peers.hpp"
-
 #include <stdexcept>
 #include <utility>
+
+#include "contender.hpp"
 
 #ifdef HAVE_SICONOS
 #include "peers/siconos.hpp"

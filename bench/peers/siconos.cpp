@@ -10,7 +10,7 @@
 #include <cmath>
 #include <memory>
 
-#include "peers/row_book.hpp"
+#include "rows.hpp"
 
 namespace impact_damper::bench {
 namespace {

@@ -10,9 +10,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "contender.hpp"
 #include "peers/hybrid_system.hpp"
-#include "peers/peers.hpp"
-#include "peers/row_book.hpp"
+#include "rows.hpp"
 
 namespace impact_damper::bench {
 namespace {

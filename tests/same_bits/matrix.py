@@ -248,6 +248,14 @@ def run_all(setting: Setting, places: Places, catalogues: dict, results: Path):
     def ask(*words):
         call([*RUNNERS.get(setting.build, []), program, *words], **options)
 
+    def once(engine, name, *words, beside=None):
+        """Among the runs of each engine what the first one's command makes: a file, and what it leaves beside it."""
+        first, runs = (results / each / "runs" for each in (ENGINES[0], engine))
+        if engine == ENGINES[0]:
+            return ask(*words, "-o", runs / name)
+        for each in (name, beside)[:2 if beside else 1]:
+            (shutil.copytree if (first / each).is_dir() else shutil.copy)(first / each, runs / each)
+
     for engine in ENGINES:
         runs, tables = results / engine / "runs", results / engine / "tables"
         runs.mkdir(parents=True)
@@ -265,26 +273,14 @@ def run_all(setting: Setting, places: Places, catalogues: dict, results: Path):
             for number, way in enumerate(WAYS[engine]):
                 ask("run", "--scene", f"tests/same_bits/scenes/{scene.name}", "--engine", engine, *RECORD,
                     *way, "-o", runs / f"{scene.stem}{f'-{number}' if number else ''}.json")
-        for entry in drawn_runs(catalogue):  # with an engine of their own
-            file = runs / f"{entry['name']}.json"
-            if engine == ENGINES[0]:
-                ask(*rerun(entry, "data/scenes"), "--members", str(catalogue["members"]), "-o", file)
-            else:
-                shutil.copy(results / ENGINES[0] / "runs" / file.name, file)
-                shutil.copytree(results / ENGINES[0] / "runs" / f"{entry['name']}.members", runs / f"{entry['name']}.members")
-        for entry in catalogue["responses"]:  # likewise
-            file = runs / f"{entry['name']}.json"
-            if engine == ENGINES[0]:
-                ask(*respond(entry, "data/scenes"), "-o", file)
-            else:
-                shutil.copy(results / ENGINES[0] / "runs" / file.name, file)
-        for plan in plans_of(catalogue):  # an engine of its own, too
-            table = runs / f"{Path(plan).stem}.csv"
-            if engine == ENGINES[0]:
-                ask("sweep", catalogues[engine].with_name(plan), "-o", table)
-            else:
-                for file in (table, table.with_name(table.name + ".json")):
-                    shutil.copy(results / ENGINES[0] / "runs" / file.name, file)
+        # Each with an engine of its own.
+        for entry in drawn_runs(catalogue):
+            once(engine, f"{entry['name']}.json", *rerun(entry, "data/scenes"), "--members", str(catalogue["members"]),
+                 beside=f"{entry['name']}.members")
+        for entry in catalogue["responses"]:
+            once(engine, f"{entry['name']}.json", *respond(entry, "data/scenes"))
+        for plan in plans_of(catalogue):
+            once(engine, f"{Path(plan).stem}.csv", "sweep", catalogues[engine].with_name(plan), beside=f"{Path(plan).stem}.csv.json")
         ask("series", "--catalogue", catalogues[engine], "--runs", runs, "--threads", "1", "-o", tables)
     ask("verify", "--runs", places.runs, "--members", MEMBERS_OF_CLAIMS, "-o", results / "verdicts.json")
     for table in results.rglob("*.csv.json"):  # names the program, of which each is another

@@ -1,26 +1,29 @@
 // Maps of what points end in, against each point followed by itself.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "impact_damper/responses/response_file.hpp"
 #include "impact_damper/simulate.hpp"
 #include "impact_damper/steady/sweep.hpp"
+#include "steady_helpers.hpp"
 
 namespace {
 
 using namespace impact_damper;
 
-const Engine rigid = Restitution{}, compliant = Exact{};
-constexpr auto no_progress = [](std::int64_t) {};
+const Engine &rigid = rigid_and_compliant[0], &compliant = rigid_and_compliant[1];
 
 Scene scene_at(double frequency) {
-  return {.damping_ratio = 0.01,
-          .x0 = 0,
-          .force_amplitude = 0.05,
-          .force_frequency = frequency,
-          .dampers = {{.mass_ratio = 0.1, .y0 = 0.5}}};
+  Scene scene = active_scene(frequency);
+  scene.x0 = 0;
+  return scene;
+}
+const Attractor* attractor_at(const Basin& map, std::int64_t n) {
+  const std::int32_t index = map.attractor[std::size_t(n)];
+  return index == undecided ? nullptr : &map.attractors[std::size_t(index)];
 }
 
 // Four motions coexist here: two of two periods and two of four, mirror images of each other.
@@ -34,10 +37,9 @@ TEST_CASE("each point ends in the motion to which it settles by itself") {
   for (std::int64_t n = 0; n < 24 * 24; ++n) {
     const Scene there = v0.at(x0.at(scene, n % 24), n / 24);
     const SteadyState steady = forced.settle(release_of(there), {});
-    const std::int32_t index = map.attractor[std::size_t(n)];
-    REQUIRE(index != undecided);
-    const Attractor& attractor = map.attractors[std::size_t(index)];
-    ++points[std::size_t(index)];
+    REQUIRE(attractor_at(map, n));
+    const Attractor& attractor = *attractor_at(map, n);
+    ++points[std::size_t(map.attractor[std::size_t(n)])];
     CHECK(attractor.period == steady.period);
     CHECK(attractor.impacts == steady.impacts);
     double nearest = 1;
@@ -61,9 +63,8 @@ TEST_CASE("of several dampers each point ends in the motion to which it settles 
     bool some_rests = false;
     for (std::int64_t n = 0; n < 6 * 5; ++n) {
       SteadyState steady = forced.settle(release_of(second.at(x0.at(scene, n % 6), n / 6)), {});
-      const std::int32_t index = map.attractor[std::size_t(n)];
-      REQUIRE(index != undecided);
-      const Attractor& attractor = map.attractors[std::size_t(index)];
+      REQUIRE(attractor_at(map, n));
+      const Attractor& attractor = *attractor_at(map, n);
       CHECK(attractor.impacts == steady.impacts);
       if (attractor.idle) continue;
       CHECK(attractor.period == steady.period);
@@ -134,11 +135,10 @@ TEST_CASE("to be near a motion once is not enough") {
               wide = basin(scene, rigid, x0, v0, {.capture_radius = 0.05}, 2, no_progress);
   REQUIRE(narrow.attractors.size() == wide.attractors.size());
   int equal = 0;
-  for (std::size_t n = 0; n < narrow.attractor.size(); ++n)
-    equal += narrow.attractors[std::size_t(narrow.attractor[n])].period ==
-                 wide.attractors[std::size_t(wide.attractor[n])].period &&
-             narrow.attractors[std::size_t(narrow.attractor[n])].impacts ==
-                 wide.attractors[std::size_t(wide.attractor[n])].impacts;
+  for (std::int64_t n = 0; n < std::ssize(narrow.attractor); ++n) {
+    const Attractor *one = attractor_at(narrow, n), *other = attractor_at(wide, n);
+    equal += one && other && one->period == other->period && one->impacts == other->impacts;
+  }
   CHECK(equal == 24 * 24);
 }
 
@@ -151,10 +151,10 @@ TEST_CASE("the mirror image of a map is the map of mirror images") {
   const Basin other = basin(mirror, compliant, x0, v0, {}, 2, no_progress);
   REQUIRE(map.attractors.size() == other.attractors.size());
   int equal = 0;
-  for (std::size_t n = 0; n < map.attractor.size(); ++n) {
-    const auto &one = map.attractors[std::size_t(map.attractor[n])],
-               &two = other.attractors[std::size_t(other.attractor[map.attractor.size() - 1 - n])];
-    equal += one.period == two.period && one.impacts[0] == two.impacts[1] && one.impacts[1] == two.impacts[0];
+  for (std::int64_t n = 0; n < 21 * 21; ++n) {
+    const Attractor *one = attractor_at(map, n), *two = attractor_at(other, 21 * 21 - 1 - n);
+    equal += one && two && one->period == two->period &&
+             one->impacts == ImpactCounts{two->impacts[1], two->impacts[0]};
   }
   // Rounding may decide about a point on the border of two basins.
   CHECK(equal >= 21 * 21 - 4);
@@ -172,11 +172,8 @@ TEST_CASE("idle is where a direct run has no impact") {
     for (std::int64_t n = 0; n < 41 * 11; ++n) {
       Scene there = y0.at(x0.at(damped, n % 41), n / 41);
       there.until_time = 300 * 2 * std::numbers::pi / there.force_frequency;
-      Record record;
-      record.impacts = true;
-      const bool strikes = !simulate(there, rigid, record).impacts->time.empty();
-      const std::int32_t index = map.attractor[std::size_t(n)];
-      const bool is_idle = index != undecided && map.attractors[std::size_t(index)].idle;
+      const bool strikes = !simulate(there, rigid, {.impacts = true}).impacts->time.empty();
+      const bool is_idle = attractor_at(map, n) && attractor_at(map, n)->idle;
       idle += is_idle;
       struck += strikes;
       CHECK(!(is_idle && strikes));
@@ -197,13 +194,12 @@ TEST_CASE("over parameters a point is classified by its period, impacts and symm
   for (std::int64_t n = 0; n < 35; ++n) {
     const Scene there = force.at(frequency.at(scene, n % 7), n / 7);
     const SteadyState steady = ForcedScene(there, rigid).settle(release_of(there), {.max_periods = 1000});
-    const std::int32_t index = map.attractor[std::size_t(n)];
-    if (index == undecided) {
+    if (!attractor_at(map, n)) {
       CHECK(!steady.period);
       continue;
     }
     ++decided;
-    const Attractor& attractor = map.attractors[std::size_t(index)];
+    const Attractor& attractor = *attractor_at(map, n);
     if (attractor.idle) {
       CHECK(steady.impacts == ImpactCounts{0, 0});
     } else if (steady.period) {  // with the map's tolerance it is sooner
@@ -232,8 +228,7 @@ TEST_CASE("no map depends on the number of threads") {
 }
 
 TEST_CASE("points that a budget ends are undecided, and counted") {
-  Exact few;
-  few.budget.max_impacts = 2;
+  const Exact few{.budget = {.max_impacts = 2}};
   const Axis x0{&Scene::x0, 0.5, 1, 3}, v0{&Scene::v0, 0.5, 1, 3};
   const Basin map = basin(scene_at(0.9), few, x0, v0, {}, 1, no_progress);
   CHECK(map.stopped == 9);

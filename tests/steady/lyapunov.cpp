@@ -4,13 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <numeric>
 
-#include "forced_scene.hpp"
-#include "impact_damper/motion/wall.hpp"
-#include "impact_damper/orbits/orbits.hpp"
-#include "impact_damper/orbits/two_impact_orbit.hpp"
 #include "impact_damper/simulate.hpp"
+#include "steady_helpers.hpp"
 
 using namespace impact_damper;
 
@@ -25,33 +22,26 @@ Scene forced(double nu, double zeta, double frequency, double amplitude) {
 }
 
 // Minus the mean divergence over periods that are each begun at phase 0, as the exponents' are.
-double mean_loss(Scene scene, const Engine& engine, int periods) {
+double mean_loss(const Scene& scene, const Engine& engine, int periods) {
   const PoincareMap map(scene, engine, 2);
-  SceneState s{scene.x0, scene.v0, scene.damper().y0, scene.damper().w0};
+  SceneState s = release_of(scene);
   double loss = 0;
   for (int i = 0; i < periods; ++i) {
-    Scene period = map.scene();
-    period.x0 = s.x, period.v0 = s.v, period.damper().y0 = s.dampers[0].y,
-    period.damper().w0 = s.dampers[0].w;
-    const Run run = simulate(period, engine, {.half_cycles = false, .impacts = true, .contacts = true});
-    loss += 2 * scene.damping_ratio * map.duration();
-    if (has_rigid_walls(engine)) {
-      loss -= 2 * double(run.impacts->time.size()) * std::log(scene.damper().restitution);
-    } else {
-      const double k = scene.damper().wall_stiffness, nu = scene.damper().mass_ratio;
-      const double damping = 2 * std::sqrt(k / nu) * zeta_m<double>(scene.damper(), Calibration::fixed_wall);
-      for (std::size_t n = 0; n < run.contacts->begin.size(); ++n)
-        loss += (1 + nu) * damping * (run.contacts->end[n] - run.contacts->begin[n]);
-    }
+    const Run run = simulate(released_from(map.scene(), s), engine,
+                             {.half_cycles = false, .impacts = true, .contacts = true});
+    loss += shrinkage(scene, engine, run, map.duration());
     s = map(s)->state;
   }
   return loss / (periods * map.duration());
 }
 
-double sum_of(const std::vector<double>& all) {
-  double sum = 0;
-  for (const double one : all) sum += one;
-  return sum;
+double sum_of(const std::vector<double>& all) { return std::accumulate(all.begin(), all.end(), 0.0); }
+
+// The stable orbit beside the one of two impacts, from which rounding alone leads away late or early.
+Orbit stable_orbit(const Scene& scene, const Engine& engine) {
+  SceneState s = two_impact_state(scene);
+  s.x += 1e-6;
+  return *find_orbit(scene, engine, 1, state_after(scene, engine, s, 500));
 }
 
 }  // namespace
@@ -63,7 +53,7 @@ TEST_CASE("the exponents add up to the mean divergence") {
   const Scene sustained = forced(0.1, 0.02, 0.95, 0.3);  // contacts that damp the fast mode by exp(-200)
   int compared = 0;
   for (const Scene& scene : {chaotic, regular, soft, sustained}) {
-    for (const Engine& engine : {Engine(Restitution{}), Engine(Exact{})}) {
+    for (const Engine& engine : rigid_and_compliant) {
       const int periods = 60;
       const LyapunovExponents found = lyapunov_exponents(scene, engine, periods);
       REQUIRE(found.stop_reason == StopReason::time);
@@ -78,12 +68,8 @@ TEST_CASE("the exponents add up to the mean divergence") {
 
 TEST_CASE("on a stable orbit they are the logarithms of the multipliers divided by the period") {
   const Scene scene = forced(0.02, 0.05, 0.9, 0.1);
-  for (const Engine& engine : {Engine(Restitution{}), Engine(Exact{})}) {
-    const PoincareMap map(scene, engine, 2);
-    SceneState s = two_impact_orbits(scene).at(0).state;
-    s.x += 1e-6;  // it is unstable, and rounding alone leads away from it late or early
-    for (int i = 0; i < 500; ++i) s = map(s)->state;
-    const Orbit orbit = *find_orbit(scene, engine, 1, s);
+  for (const Engine& engine : rigid_and_compliant) {
+    const Orbit orbit = stable_orbit(scene, engine);
     REQUIRE(orbit.stable());
     const double period = *orbit.scene.until_time;
     const int periods = 400;
@@ -110,7 +96,7 @@ TEST_CASE("a chaotic run's largest exponent is the rate at which two neighbours 
   REQUIRE(found.stop_reason == StopReason::time);
   const PoincareMap map(scene, Restitution{}, 2);
   const double distance = 1e-9;
-  SceneState one{scene.x0, scene.v0, scene.damper().y0, scene.damper().w0}, other = one;
+  SceneState one = release_of(scene), other = one;
   other.x += distance;
   double stretch = 0;
   for (int i = 0; i < periods; ++i) {
@@ -152,11 +138,7 @@ TEST_CASE("the standard errors are how much the exponents of independent runs sc
   CHECK(told < 1.6 * scatter);
 
   // Of what is the same in each period there is none; of nine periods it is not told.
-  const Scene light = forced(0.02, 0.05, 0.9, 0.1);
-  SceneState s = two_impact_orbits(light).at(0).state;
-  s.x += 1e-6;
-  for (int i = 0; i < 500; ++i) s = PoincareMap(light, Restitution{}, 2)(s)->state;
-  const Orbit orbit = *find_orbit(light, Restitution{}, 1, s);
+  const Orbit orbit = stable_orbit(forced(0.02, 0.05, 0.9, 0.1), Restitution{});
   const LyapunovExponents regular = lyapunov_exponents(orbit.scene, Restitution{}, 100, 400);
   double sum_of_errors = 0;
   for (std::size_t i = 0; i < 4; ++i)
@@ -170,9 +152,7 @@ TEST_CASE("the standard errors are how much the exponents of independent runs sc
 }
 
 TEST_CASE("sticking leaves two exponents") {
-  Scene scene = forced(0.1, 0.02, 0.95, 0.3);
-  const State<double> s = two_impact_orbits(scene).at(0).state;
-  scene.x0 = s.x, scene.v0 = s.v, scene.damper().y0 = s.y, scene.damper().w0 = s.w;
+  const Scene from = forced(0.1, 0.02, 0.95, 0.3), scene = released_from(from, two_impact_state(from));
   const LyapunovExponents found = lyapunov_exponents(scene, Restitution{}, 100, 100);
   REQUIRE(found.exponents.size() == 2);
   CHECK(found.exponents[0] < 0);

@@ -7,32 +7,14 @@
 #include <functional>
 #include <numbers>
 
-#include "forced_scene.hpp"
-#include "impact_damper/orbits/two_impact_orbit.hpp"
 #include "impact_damper/simulate.hpp"
 #include "reference.hpp"
+#include "steady_helpers.hpp"
 
 using namespace impact_damper;
 
 namespace {
 
-double linear_amplitude(const Scene& scene) {
-  const double w = scene.force_frequency;
-  return std::fabs(scene.force_amplitude) / std::hypot(1 - w * w, 2 * scene.damping_ratio * w);
-}
-SceneState state_of_scene(const Scene& scene) {
-  return {scene.x0, scene.v0, scene.damper().y0, scene.damper().w0};
-}
-double apart(const SceneState& a, const SceneState& b) {
-  return std::max({std::fabs(a.x - b.x), std::fabs(a.v - b.v), std::fabs(a.dampers[0].y - b.dampers[0].y),
-                   std::fabs(a.dampers[0].w - b.dampers[0].w)});
-}
-// Where a plain simulation is after many periods, each begun at phase 0.
-SceneState settled(const Scene& scene, const Engine& engine, SceneState s, int periods) {
-  const PoincareMap map(scene, engine, 2);
-  for (int i = 0; i < periods; ++i) s = map(s)->state;
-  return s;
-}
 double bisected(double low, double high, const std::function<bool(double)>& is_low) {
   for (int i = 0; i < 100; ++i) {
     const double middle = (low + high) / 2;
@@ -42,15 +24,8 @@ double bisected(double low, double high, const std::function<bool(double)>& is_l
 }
 // An event at which nothing branches off.
 BranchEvent fold_at(const Scene& scene) {
-  const Orbit orbit = *find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
-  return {BranchEventKind::fold, scene.force_amplitude, orbit};
+  return {BranchEventKind::fold, scene.force_amplitude, first_orbit(scene)};
 }
-const BranchEvent* first_of(const Branch& branch, BranchEventKind kind) {
-  for (const BranchEvent& event : branch.events)
-    if (event.kind == kind) return &event;
-  return nullptr;
-}
-
 }  // namespace
 
 TEST_CASE("orbits of two symmetric impacts are those of the closed form, with their multipliers") {
@@ -73,14 +48,14 @@ TEST_CASE("orbits of two symmetric impacts are those of the closed form, with th
       CHECK(orbit.symmetric);
       CHECK(orbit.periods == 1);
       const double scale = 1 + linear_amplitude(scene) + 1 / expected.impact_speed;
-      CHECK(apart(state_of_scene(orbit.scene), expected.state) < 1e-12 * scale);
+      CHECK(distance(release_of(orbit.scene), expected.state) < 1e-12 * scale);
       CHECK(std::fabs(orbit.impacts[0].speed - expected.impact_speed) < 1e-12 * scale);
       REQUIRE(orbit.half_multipliers);
       for (std::size_t i = 0; i < 4; ++i)  // of a pair the one above the real axis is first
         if (orbit.multipliers[i].im < 0) CHECK(orbit.multipliers[i - 1].im == -orbit.multipliers[i].im);
       // Of the whole period, by its own derivative.
       const Multipliers whole =
-          multipliers_of(PoincareMap(scene, Restitution{}, 2)(state_of_scene(orbit.scene))->by_state);
+          multipliers_of(PoincareMap(scene, Restitution{}, 2)(release_of(orbit.scene))->by_state);
       double of_whole = 0;
       for (std::size_t i = 0; i < 4; ++i) {
         const Multiplier &a = orbit.multipliers[i], &b = whole[i];
@@ -126,15 +101,11 @@ TEST_CASE(
     "a branch through both folds closes, and is the closed form throughout, also where impacts pass phase "
     "0") {
   const Scene scene = forced_scene(0.02, 0.1, 0.9, 0.0655307);
-  const Orbit first = *find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
-  const Branch branch = follow(first, Parameter::force_frequency, {.least = 0.3, .most = 2.5});
+  const Branch branch = follow(first_orbit(scene), Parameter::force_frequency, {.least = 0.3, .most = 2.5});
   CHECK(branch.end == BranchEnd::closed);
   bool left_before = false, left_after = false;
   for (const Orbit& orbit : branch.orbits) {
-    double nearest = 1;
-    for (const TwoImpactOrbit& expected : two_impact_orbits(orbit.scene))
-      nearest = std::min(nearest, apart(state_of_scene(orbit.scene), expected.state));
-    CHECK(nearest < 1e-9);  // near a fold both orbits are known to half of the digits
+    CHECK(off_closed_form(orbit) < 1e-9);  // near a fold both orbits are known to half of the digits
     REQUIRE(orbit.impacts.size() == 2);
     (orbit.impacts[0].wall == Wall::left ? left_before : left_after) = true;
   }
@@ -157,17 +128,14 @@ TEST_CASE(
 
 TEST_CASE("a heavy secondary mass, too, is followed both ways through its impacts at phase 0") {
   const Scene scene = forced_scene(0.5, 0.1, 1.2, 0.224362);
-  const Orbit first = *find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
+  const Orbit first = first_orbit(scene);
   for (const bool upwards : {true, false}) {
     const Branch branch = follow(first, Parameter::force_frequency,
                                  {.least = 0.3, .most = 2.5, .upwards = upwards, .max_points = 400});
     int crossings = 0;
     for (std::size_t i = 0; i < branch.orbits.size(); ++i) {
       const Orbit& orbit = branch.orbits[i];
-      double nearest = 1;
-      for (const TwoImpactOrbit& expected : two_impact_orbits(orbit.scene))
-        nearest = std::min(nearest, apart(state_of_scene(orbit.scene), expected.state));
-      if (orbit.slowest_impact.value_or(0) > 1e-3) CHECK(nearest < 1e-8);
+      if (orbit.slowest_impact.value_or(0) > 1e-3) CHECK(off_closed_form(orbit) < 1e-8);
       if (i > 0) crossings += orbit.impacts[0].wall != branch.orbits[i - 1].impacts[0].wall;
     }
     CHECK(crossings >= 1);
@@ -177,9 +145,8 @@ TEST_CASE("a heavy secondary mass, too, is followed both ways through its impact
 
 TEST_CASE("near a fold no step leads from one side of the branch to the other") {
   const Scene scene = forced_scene(0.5, 0.1, 1.4, 0.309605);
-  const Orbit first = *find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
   const Branch branch =
-      follow(first, Parameter::force_frequency, {.least = 0.3, .most = 2.5, .upwards = false});
+      follow(first_orbit(scene), Parameter::force_frequency, {.least = 0.3, .most = 2.5, .upwards = false});
   REQUIRE(branch.end == BranchEnd::grazing);
   CHECK(first_of(branch, BranchEventKind::fold) != nullptr);
   const double expected = bisected(0.3, 0.9, [&](double frequency) {
@@ -199,8 +166,8 @@ TEST_CASE(
   };
   {
     const Scene scene = forced_scene(0.02, 0.02, 0.9, 0.04);
-    const Orbit first = *find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
-    const Branch branch = follow(first, Parameter::force_amplitude, {.least = 0.03, .most = 0.07});
+    const Branch branch =
+        follow(first_orbit(scene), Parameter::force_amplitude, {.least = 0.03, .most = 0.07});
     const BranchEvent* event = first_of(branch, BranchEventKind::symmetry_breaking);
     REQUIRE(event);
     const double expected = bisected(0.04, 0.07, [&](double amplitude) {
@@ -214,9 +181,8 @@ TEST_CASE(
   }
   {
     const Scene scene = forced_scene(0.02, 0.02, 1.2, 0.06);
-    const Orbit first = *find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
-    const Branch branch =
-        follow(first, Parameter::force_amplitude, {.least = 0.0385, .most = 0.07, .upwards = false});
+    const Branch branch = follow(first_orbit(scene), Parameter::force_amplitude,
+                                 {.least = 0.0385, .most = 0.07, .upwards = false});
     const BranchEvent* event = first_of(branch, BranchEventKind::neimark_sacker);
     REQUIRE(event);
     const double expected = bisected(0.0385, 0.06, [&](double amplitude) {
@@ -258,9 +224,8 @@ TEST_CASE("a secondary mass that is not struck grazes both walls where the linea
 TEST_CASE("orbits of two impacts end in the same grazing, from the other side") {
   for (const double nu : {0.02, 0.1}) {
     const Scene scene = forced_scene(nu, 0.1, 0.9, 0.08);
-    const Orbit first = *find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
-    const Branch branch =
-        follow(first, Parameter::force_amplitude, {.least = 0.005, .most = 0.3, .upwards = false});
+    const Branch branch = follow(first_orbit(scene), Parameter::force_amplitude,
+                                 {.least = 0.005, .most = 0.3, .upwards = false});
     CHECK(branch.end == BranchEnd::grazing);
     const BranchEvent* event = first_of(branch, BranchEventKind::grazing);
     REQUIRE(event);
@@ -276,7 +241,7 @@ TEST_CASE("compliant walls tend to rigid ones, with the root of the stiffness") 
     scene.damper().wall_stiffness = stiffness;
     const Orbit orbit = *find_orbit(scene, Exact{.calibration = Calibration::two_body}, 1, rigid.state);
     CHECK(orbit.symmetric);
-    const double off = apart(state_of_scene(orbit.scene), rigid.state);
+    const double off = distance(release_of(orbit.scene), rigid.state);
     if (before > 0) CHECK(before / off == doctest::Approx(10).epsilon(0.05));
     before = off;
   }
@@ -284,22 +249,14 @@ TEST_CASE("compliant walls tend to rigid ones, with the root of the stiffness") 
 }
 
 TEST_CASE("a stable orbit is where ten thousand periods of simulation stay") {
-  struct Kind {
-    Scene scene;
-    Engine engine;
-    SceneState guess;
-  };
   const Scene light = forced_scene(0.02, 0.05, 0.9, 0.1);
   Scene strong = forced_scene(0.1, 0.02, 0.95, 0.3);
   strong.damper().wall_stiffness = 1e5;
-  const std::vector<Kind> kinds{{light, Restitution{}, two_impact_orbits(light).at(0).state},
-                                {light, Exact{}, two_impact_orbits(light).at(0).state},
-                                {strong, Restitution{}, two_impact_orbits(strong).at(0).state},
-                                {strong, Exact{}, two_impact_orbits(strong).at(0).state}};
   int stable = 0, sticking = 0;
-  for (const Kind& kind : kinds) {
-    const Orbit orbit =
-        *find_orbit(kind.scene, kind.engine, 1, settled(kind.scene, kind.engine, kind.guess, 300));
+  for (int i = 0; i < 4; ++i) {
+    const Scene& of = i < 2 ? light : strong;
+    const Engine& engine = rigid_and_compliant[std::size_t(i % 2)];
+    const Orbit orbit = *find_orbit(of, engine, 1, state_after(of, engine, two_impact_state(of), 300));
     if (!orbit.stable()) continue;
     ++stable;
     sticking += orbit.sticking > 0;
@@ -312,16 +269,14 @@ TEST_CASE("a stable orbit is where ten thousand periods of simulation stay") {
           options.max_steps = 1'000'000'000;
           return simulate(scene, options, {.half_cycles = false, .history = {{end - 1, end, 2}}});
         },
-        kind.engine);
+        engine);
     REQUIRE(run.stop_reason == StopReason::time);
-    const std::size_t last = run.history->time.size() - 1;
-    const SceneState then{run.history->x[last], run.history->v[last], run.history->dampers[0].y[last],
-                          run.history->dampers[0].w[last]};
+    const SceneState then = state_in(*run.history, run.history->time.size() - 1);
     // The force's phase is known to 2^-52 omega_f t, by which all else is late; 1/(1 - |multiplier|) periods
     // of such errors add up.
     const double rate =
         1 + std::fabs(scene.x0) + std::fabs(scene.damper().w0) + 10 * std::fabs(orbit.impacts[0].speed);
-    CHECK(apart(then, state_of_scene(orbit.scene)) <
+    CHECK(distance(then, release_of(orbit.scene)) <
           0x1p-52 * end * rate / (1 - orbit.multipliers[0].modulus()));
   }
   CHECK(stable >= 3);
@@ -330,7 +285,7 @@ TEST_CASE("a stable orbit is where ten thousand periods of simulation stay") {
 
 TEST_CASE("sticking takes two multipliers to 0, and Newton's iteration finds such an orbit as any other") {
   const Scene scene = forced_scene(0.1, 0.02, 0.95, 0.3);
-  const SceneState near = settled(scene, Restitution{}, two_impact_orbits(scene).at(0).state, 40);
+  const SceneState near = state_after(scene, Restitution{}, two_impact_state(scene), 40);
   const Orbit orbit = *find_orbit(scene, Restitution{}, 1, near);
   REQUIRE(orbit.sticking > 0);
   CHECK(orbit.residual() < 1e-12);
@@ -341,25 +296,25 @@ TEST_CASE("sticking takes two multipliers to 0, and Newton's iteration finds suc
   const Branch branch = follow(orbit, Parameter::force_amplitude, {.least = 0.25, .most = 0.5});
   CHECK(branch.orbits.size() > 5);
   for (const Orbit& at : branch.orbits) {
-    const SceneState s = state_of_scene(at.scene);
-    CHECK(apart(settled(at.scene, Restitution{}, s, 1), s) < 1e-8);
+    const SceneState s = release_of(at.scene);
+    CHECK(distance(state_after(at.scene, Restitution{}, s, 1), s) < 1e-8);
   }
 }
 
 TEST_CASE("beyond symmetry breaking there are two orbits, and beyond their flip one of twice the period") {
   Scene scene = forced_scene(0.02, 0.02, 0.9, 0.06);
-  const Orbit symmetric = *find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
+  const Orbit symmetric = first_orbit(scene);
   CHECK(symmetric.symmetric);
   CHECK(!symmetric.stable());
-  SceneState start = two_impact_orbits(scene).at(0).state;
+  SceneState start = two_impact_state(scene);
   start.dampers[0].w += 1e-3;
-  const Orbit one = *find_orbit(scene, Restitution{}, 1, settled(scene, Restitution{}, start, 3000));
+  const Orbit one = *find_orbit(scene, Restitution{}, 1, state_after(scene, Restitution{}, start, 3000));
   CHECK(!one.symmetric);
   CHECK(!one.half_multipliers);
   CHECK(one.stable());
   CHECK(one.periods == 1);
   // Sought with two periods it is found as one of a single period.
-  CHECK(find_orbit(scene, Restitution{}, 2, state_of_scene(one.scene))->periods == 1);
+  CHECK(find_orbit(scene, Restitution{}, 2, release_of(one.scene))->periods == 1);
 
   // Downwards it ends where it branched off: there the closed form loses its symmetry.
   const Branch down = follow(one, Parameter::force_amplitude,
@@ -368,9 +323,8 @@ TEST_CASE("beyond symmetry breaking there are two orbits, and beyond their flip 
   REQUIRE(joined);
   CHECK(down.end == BranchEnd::joined);
   CHECK(down.orbits.back().scene.force_amplitude == joined->parameter);
-  const Orbit below = *find_orbit(forced_scene(0.02, 0.02, 0.9, 0.05), Restitution{}, 1,
-                                  two_impact_orbits(forced_scene(0.02, 0.02, 0.9, 0.05)).at(0).state);
-  const Branch main = follow(below, Parameter::force_amplitude, {.least = 0.04, .most = 0.07});
+  const Branch main = follow(first_orbit(forced_scene(0.02, 0.02, 0.9, 0.05)), Parameter::force_amplitude,
+                             {.least = 0.04, .most = 0.07});
   const BranchEvent* left = first_of(main, BranchEventKind::symmetry_breaking);
   REQUIRE(left);
   CHECK(std::fabs(joined->parameter - left->parameter) < 1e-10);
@@ -381,9 +335,9 @@ TEST_CASE("beyond symmetry breaking there are two orbits, and beyond their flip 
   CHECK(beside_it.scene.force_amplitude > left->parameter);
   const Branch off = follow(beside_it, Parameter::force_amplitude, {.least = 0.04, .most = 0.06});
   REQUIRE(off.end == BranchEnd::range);
-  const SceneState there = state_of_scene(off.orbits.back().scene),
+  const SceneState there = release_of(off.orbits.back().scene),
                    mirrored = PoincareMap(scene, Restitution{}, 1)(there)->state;
-  CHECK(std::min(apart(there, state_of_scene(one.scene)), apart(mirrored, state_of_scene(one.scene))) < 1e-9);
+  CHECK(std::min(distance(there, release_of(one.scene)), distance(mirrored, release_of(one.scene))) < 1e-9);
   CHECK(branching_off(fold_at(scene), Parameter::force_amplitude).failure().end == OrbitEnd::no_convergence);
 
   const Branch up = follow(one, Parameter::force_amplitude, {.least = 0.05, .most = 0.2});
@@ -393,9 +347,9 @@ TEST_CASE("beyond symmetry breaking there are two orbits, and beyond their flip 
   for (const Multiplier& m : flip->orbit.multipliers) nearest = std::min(nearest, std::hypot(m.re + 1, m.im));
   CHECK(nearest < 1e-8);
   scene.force_amplitude = flip->parameter * (1 + 1e-3);
-  SceneState beside = state_of_scene(flip->orbit.scene);
+  SceneState beside = release_of(flip->orbit.scene);
   beside.dampers[0].w += 1e-3;
-  const Orbit doubled = *find_orbit(scene, Restitution{}, 2, settled(scene, Restitution{}, beside, 4000));
+  const Orbit doubled = *find_orbit(scene, Restitution{}, 2, state_after(scene, Restitution{}, beside, 4000));
   CHECK(doubled.periods == 2);
   CHECK(doubled.stable());
 
@@ -405,9 +359,9 @@ TEST_CASE("beyond symmetry breaking there are two orbits, and beyond their flip 
   const Branch off_flip = follow(first, Parameter::force_amplitude,
                                  {.least = 0.05, .most = scene.force_amplitude, .first_step = 1e-3});
   REQUIRE(off_flip.end == BranchEnd::range);
-  const SceneState last = state_of_scene(off_flip.orbits.back().scene),
-                   later = settled(scene, Restitution{}, last, 1);
-  CHECK(std::min(apart(last, state_of_scene(doubled.scene)), apart(later, state_of_scene(doubled.scene))) <
+  const SceneState last = release_of(off_flip.orbits.back().scene),
+                   later = state_after(scene, Restitution{}, last, 1);
+  CHECK(std::min(distance(last, release_of(doubled.scene)), distance(later, release_of(doubled.scene))) <
         1e-9);
   const Branch back =
       follow(doubled, Parameter::force_amplitude, {.least = 0.05, .most = 0.2, .upwards = false});
@@ -418,7 +372,7 @@ TEST_CASE("beyond symmetry breaking there are two orbits, and beyond their flip 
 
 TEST_CASE("steps of the parameter are as short as asked for, and events say between which orbits they are") {
   const Scene scene = forced_scene(0.02, 0.02, 0.9, 0.04);
-  const Orbit first = *find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
+  const Orbit first = first_orbit(scene);
   const Branch branch = follow(first, Parameter::force_amplitude,
                                {.least = 0.03, .most = 0.07, .largest_step = 1, .largest_change = 3e-4});
   REQUIRE(branch.end == BranchEnd::range);
@@ -442,9 +396,8 @@ TEST_CASE("steps of the parameter are as short as asked for, and events say betw
 
 TEST_CASE("a branch ends where it is more unstable than asked for, unless grazing is the cause") {
   const Scene scene = forced_scene(0.02, 0.02, 0.9, 0.05);
-  const Orbit first = *find_orbit(scene, Restitution{}, 1, two_impact_orbits(scene).at(0).state);
-  const Branch branch =
-      follow(first, Parameter::force_amplitude, {.least = 0.05, .most = 0.2, .max_multiplier = 5});
+  const Branch branch = follow(first_orbit(scene), Parameter::force_amplitude,
+                               {.least = 0.05, .most = 0.2, .max_multiplier = 5});
   REQUIRE(branch.end == BranchEnd::unstable);
   const std::size_t last = branch.orbits.size() - 1;
   const auto instability = [&](std::size_t i) {
@@ -455,8 +408,7 @@ TEST_CASE("a branch ends where it is more unstable than asked for, unless grazin
   CHECK(instability(last - 1) <= 5);
 
   const Scene grazing = forced_scene(0.5, 0.1, 1.4, 0.309605);
-  const Orbit impacting = *find_orbit(grazing, Restitution{}, 1, two_impact_orbits(grazing).at(0).state);
-  CHECK(follow(impacting, Parameter::force_frequency,
+  CHECK(follow(first_orbit(grazing), Parameter::force_frequency,
                {.least = 0.3, .most = 2.5, .upwards = false, .max_multiplier = 100})
             .end == BranchEnd::grazing);
 }
@@ -474,11 +426,9 @@ TEST_CASE("what cannot be followed or found says so") {
   CHECK_THROWS_AS(find_orbit(scene, Restitution{}, 0, {}), InvalidArguments);
   CHECK_THROWS_AS(find_orbit(scene, Restitution{}, 2, {}, {.symmetric = true}), InvalidArguments);
   CHECK_THROWS_AS(find_orbit(scene, Restitution{}, 1, {}, {.tolerance = 0}), InvalidArguments);
-  CHECK_THROWS_AS(follow(orbit, Parameter::force_amplitude, {.least = 0, .most = 1}), InvalidArguments);
-  CHECK_THROWS_AS(follow(orbit, Parameter::force_amplitude, {.least = 0.1, .most = 1, .largest_change = 0}),
-                  InvalidArguments);
-  CHECK_THROWS_AS(follow(orbit, Parameter::force_amplitude, {.least = 0.1, .most = 1, .max_multiplier = 0}),
-                  InvalidArguments);
-  CHECK_THROWS_AS(follow(orbit, Parameter::force_amplitude, {.least = 0.1, .most = std::nan("")}),
-                  InvalidArguments);
+  for (const FollowOptions& options : {FollowOptions{.least = 0, .most = 1},
+                                       {.least = 0.1, .most = 1, .largest_change = 0},
+                                       {.least = 0.1, .most = 1, .max_multiplier = 0},
+                                       {.least = 0.1, .most = std::nan("")}})
+    CHECK_THROWS_AS(follow(orbit, Parameter::force_amplitude, options), InvalidArguments);
 }

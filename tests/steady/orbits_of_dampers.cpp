@@ -8,12 +8,12 @@
 #include <optional>
 #include <vector>
 
-#include "forced_scene.hpp"
 #include "impact_damper/orbits/branches.hpp"
 #include "impact_damper/simulate.hpp"
 #include "reference.hpp"
 #include "same_run.hpp"
 #include "shared_scenes.hpp"
+#include "steady_helpers.hpp"
 
 using namespace impact_damper;
 using reference::farthest;
@@ -57,11 +57,6 @@ Branch branch_to_end_of_range(const Scene& scene, double to) {
 SteadyState settled(const Scene& scene, const Engine& engine) {
   return ForcedScene(scene, engine).settle(release_of(scene), {.max_periods = 20'000});
 }
-const BranchEvent* first_of(const Branch& branch, BranchEventKind kind) {
-  const auto at = std::ranges::find(branch.events, kind, &BranchEvent::kind);
-  return at == branch.events.end() ? nullptr : &*at;
-}
-
 bool agree(const std::optional<double>& a, const std::optional<double>& b) {
   return a.has_value() == b.has_value() && (!a || std::fabs(*a - *b) < 1e-9);
 }
@@ -78,7 +73,7 @@ TEST_CASE("the Poincare map of a list of one damper is that of the scene without
     Scene scene = forced_scene(mass, damping, frequency, amplitude);
     scene.damper().restitution = random.uniform(0.2, 0.9);
     const bool rigid = seed % 2 == 0;
-    const Engine engine = rigid ? Engine(Restitution{}) : Engine(Exact{});
+    const Engine& engine = rigid_and_compliant[rigid ? 0 : 1];
     const int half_periods = 1 + int(seed % 3);
     State<double> start{random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(0.1, 0.9),
                         random.uniform(-1, 1)};
@@ -117,7 +112,7 @@ TEST_CASE("the Poincare map of a list of one damper is that of the scene without
 }
 
 TEST_CASE("half a period of several dampers applied twice is a period") {
-  for (const Engine& engine : {Engine(Restitution{}), Engine(Exact{})}) {
+  for (const Engine& engine : rigid_and_compliant) {
     const Scene scene = two_dampers(0.05, 0.9, 1.5, 0.7);
     const SceneState start = settled(scene, engine).state;
     const PoincareImage whole = *PoincareMap(scene, engine, 2)(start);
@@ -140,7 +135,7 @@ TEST_CASE("the nearest miss of several dampers is that of their samples") {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     reference::Random random(seed);
     const bool rigid = seed % 2 == 0;
-    const Engine engine = rigid ? Engine(Restitution{}) : Engine(Exact{});
+    const Engine& engine = rigid_and_compliant[rigid ? 0 : 1];
     const double force = random.uniform(0.1, 0.6), frequency = random.uniform(0.6, 1.4),
                  second_clearance = random.uniform(0.5, 3);
     Scene scene = two_dampers(force, frequency, second_clearance, 0.2);
@@ -198,7 +193,7 @@ TEST_CASE("the nearest miss of masses at rest in space is that of the linear res
                    {.mass_ratio = 0.04, .y0 = 1.1 - scene.x0, .w0 = -scene.v0}};
   const std::array<SceneDamper, 2> both{scene.dampers[0], scene.dampers[1]};
   const auto check = [&](double z_from_wall) {
-    for (const Engine& engine : {Engine(Restitution{}), Engine(Exact{})}) {
+    for (const Engine& engine : rigid_and_compliant) {
       const PoincareImage image = *PoincareMap(scene, engine, 2)(release_of(scene));
       CHECK(image.impacts.empty());
       CHECK(*image.nearest_miss == doctest::Approx(z_from_wall - f0 / std::sqrt(square)).epsilon(1e-12));
@@ -228,7 +223,7 @@ TEST_CASE("a mass that sticks from the start is not newly stuck by another mass'
 }
 
 TEST_CASE("a stable orbit of two dampers is what simulation comes to, as fast as its multiplier says") {
-  for (const Engine& engine : {Engine(Restitution{}), Engine(Exact{})}) {
+  for (const Engine& engine : rigid_and_compliant) {
     const Scene scene = two_dampers(0.05, 0.9, 1.5, 0.7);
     const SteadyState steady = settled(scene, engine);
     REQUIRE(steady.period == 1);
@@ -280,7 +275,7 @@ TEST_CASE("a Neimark-Sacker point of two dampers is where simulation leaves the 
 }
 
 TEST_CASE("a damper that is not struck leaves the branches of the other as they are") {
-  for (const Engine& engine : {Engine(Restitution{}), Engine(Exact{})}) {
+  for (const Engine& engine : rigid_and_compliant) {
     Scene alone = forced_scene(0.06, 0.05, 0.9, 0.05);
     alone.x0 = 0.5;
     alone.damper().y0 = 0.4;

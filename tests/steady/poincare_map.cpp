@@ -3,14 +3,16 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <concepts>
 #include <numbers>
 #include <utility>
 
-#include "impact_damper/motion/wall.hpp"
+#include "engines/observed.hpp"
 #include "impact_damper/simulate.hpp"
-#include "long_double_run.hpp"
 #include "reference.hpp"
+#include "steady_helpers.hpp"
 
 using namespace impact_damper;
 
@@ -18,9 +20,50 @@ namespace {
 
 constexpr auto with_parameters = PoincareMap::Derivatives::by_state_and_parameters;
 
-Scene begun_at(Scene scene, const State<double>& s) {
-  scene.x0 = s.x, scene.v0 = s.v, scene.damper().y0 = s.y, scene.damper().w0 = s.w;
-  return scene;
+// The end of a run in extended precision: what derivatives are held against, by differences.
+using Number = long double;
+
+struct LastState : TestObserver<Number> {
+  void impact(double, Wall, double, double) override { ++impacts; }
+  void ended(const State<Number>& state) override { end = {state.x, state.v, state.y, state.w}; }
+
+  std::array<Number, 4> end{};
+  int impacts = 0;
+};
+
+LastState last_of(const Scene& scene, const Engine& engine) {
+  LastState last;
+  observed(scene, engine, last);
+  return last;
+}
+
+// The derivative of the end by a scene's number, and how many impacts the two runs had at the larger
+// distance, unequal where the derivative is not one of a single sequence of events. Differences of both
+// sides at h and 2h, without their errors of second order.
+struct Difference {
+  std::array<Number, 4> by{};
+  std::array<int, 2> impacts{};
+};
+// change(scene, by): changes one number of the scene.
+template <std::invocable<Scene&, double> Change>
+Difference difference(const Scene& scene, const Engine& engine, double h, Change&& change) {
+  const auto at = [&](double by) {
+    Scene changed = scene;
+    change(changed, by);
+    return last_of(changed, engine);
+  };
+  const LastState a = at(h), b = at(-h), c = at(2 * h), d = at(-2 * h);
+  Difference all;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Number near = (a.end[i] - b.end[i]) / (2 * Number(h)),
+                 far = (c.end[i] - d.end[i]) / (4 * Number(h));
+    all.by[i] = (4 * near - far) / 3;
+  }
+  all.impacts = {c.impacts, d.impacts};
+  return all;
+}
+Difference difference(const Scene& scene, const Engine& engine, double h, const SceneNumber& number) {
+  return difference(scene, engine, h, [&](Scene& changed, double by) { number.in(changed) += by; });
 }
 
 double determinant(StateMatrix a) {
@@ -96,16 +139,16 @@ TEST_CASE("the derivative agrees with differences in extended precision, for eve
     if (image.slowest_impact && *image.slowest_impact < 0.02) continue;
     if (image.nearest_miss && *image.nearest_miss < 1e-3) continue;
     if (largest(image.by_state) > 1e4) continue;
-    const Scene scene = begun_at(map.scene(), c.start);
+    const Scene scene = released_from(map.scene(), c.start);
     const double mirror = map.half_periods() % 2 == 0 ? 1 : -1;
     const bool rests = c.start.y == 0 && has_rigid_walls(c.engine);
     const double scale = std::max(1.0, largest(image.by_state));
 
     bool one_sequence = true;
-    std::array<long_double_run::Difference, 4> by;
+    std::array<Difference, 4> by;
     for (std::size_t j = 0; j < 4; ++j) {
       if (rests && j >= 2) continue;  // such a change would lead through the wall
-      by[j] = long_double_run::difference(scene, c.engine, step, numbers_of_state[j]);
+      by[j] = difference(scene, c.engine, step, numbers_of_state[j]);
       one_sequence = one_sequence && (image.sticking > 0 || (by[j].impacts[0] == int(image.impacts.size()) &&
                                                              by[j].impacts[1] == int(image.impacts.size())));
     }
@@ -119,10 +162,10 @@ TEST_CASE("the derivative agrees with differences in extended precision, for eve
       for (std::size_t j = 0; j < (rests ? 2u : 4u); ++j) same(image.by_state[i][j], by[j].by[i]);
 
     // At a fixed time, which until_time keeps, since the end of the period is not a round number.
-    const auto by_frequency = long_double_run::difference(scene, c.engine, step, &Scene::force_frequency),
-               by_amplitude = long_double_run::difference(scene, c.engine, step, &Scene::force_amplitude),
-               by_time = long_double_run::difference(
-                   scene, c.engine, step, [](Scene&changed, double later) { *changed.until_time += later; });
+    const auto by_frequency = difference(scene, c.engine, step, &Scene::force_frequency),
+               by_amplitude = difference(scene, c.engine, step, &Scene::force_amplitude),
+               by_time = difference(scene, c.engine, step,
+                                    [](Scene&changed, double later) { *changed.until_time += later; });
     const double end_by_frequency = -map.duration() / scene.force_frequency;
     for (std::size_t i = 0; i < 4; ++i) {
       const double rate = std::max(1.0, std::fabs(double(by_time.by[i]) * end_by_frequency));
@@ -200,22 +243,13 @@ TEST_CASE("volumes contract as the divergence and the impacts tell") {
     const Case c = random_case(seed);
     const PoincareMap map(c.scene, c.engine, 2);
     const PoincareImage image = *map(c.start);
-    const Run run = simulate(begun_at(map.scene(), c.start), c.engine,
+    const Run run = simulate(released_from(map.scene(), c.start), c.engine,
                              {.half_cycles = false, .impacts = true, .contacts = true});
     const bool sticks = has_rigid_walls(c.engine) && !run.contacts->begin.empty();
     if (sticks || image.slowest_impact.value_or(1) < 1e-3) continue;
-    double loss = 2 * c.scene.damping_ratio * map.duration();
-    if (has_rigid_walls(c.engine)) {
-      loss -= 2 * double(run.impacts->time.size()) * std::log(c.scene.damper().restitution);
-    } else {
-      const double k = c.scene.damper().wall_stiffness, nu = c.scene.damper().mass_ratio;
-      const double damping =
-          2 * std::sqrt(k / nu) * zeta_m<double>(c.scene.damper(), Calibration::fixed_wall);
-      for (std::size_t i = 0; i < run.contacts->begin.size(); ++i)
-        loss += (1 + nu) * damping * (run.contacts->end[i] - run.contacts->begin[i]);
-    }
     // What is far below the largest product of four entries is lost in rounding errors.
-    const double expected = std::exp(-loss), scale = std::pow(std::max(1.0, largest(image.by_state)), 4);
+    const double expected = std::exp(-shrinkage(c.scene, c.engine, run, map.duration())),
+                 scale = std::pow(std::max(1.0, largest(image.by_state)), 4);
     CHECK(std::fabs(determinant(image.by_state) - expected) < 1e-12 * scale + 1e-9 * expected);
     if (expected > 1e-6 * scale) ++(has_rigid_walls(c.engine) ? rigid : compliant);
   }
@@ -257,7 +291,7 @@ TEST_CASE("the nearest miss is that of densely sampled runs") {
     const PoincareImage image = *map(c.start);
     if (image.sticking > 0) continue;
     const std::int64_t count = 200'000;
-    const Run run = simulate(begun_at(map.scene(), c.start), c.engine,
+    const Run run = simulate(released_from(map.scene(), c.start), c.engine,
                              {.half_cycles = false, .history = {{0, map.duration(), count}}});
     const std::vector<double>& y = run.history->dampers[0].y;
     double least = 1e9;

@@ -11,22 +11,14 @@
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/simulate.hpp"
+#include "steady_helpers.hpp"
 
 namespace {
 
 using namespace impact_damper;
 
-// Its release strikes at once.
-Scene active_scene() {
-  return {.damping_ratio = 0.01,
-          .x0 = 1,
-          .force_amplitude = 0.05,
-          .force_frequency = 0.9,
-          .dampers = {{.mass_ratio = 0.1, .y0 = 0.5}}};
-}
-
 SweepResponse asked_sweep() {
-  return {active_scene(),
+  return {active_scene(0.9),
           Restitution{},
           {.tolerance = 1e-8, .max_periods = 300, .mean_periods = 40},
           {&Scene::force_frequency, 0.85, 1.15, 4},
@@ -40,13 +32,11 @@ SweepResponse several_sweep() {
 }
 SweepResponse ended_sweep() {
   SweepResponse ended = asked_sweep();
-  Exact few;
-  few.budget.max_impacts = 3;
-  ended.engine = few;
+  ended.engine = Exact{.budget = {.max_impacts = 3}};
   return ended;
 }
 BasinResponse asked_basin() {
-  return {active_scene(),         Restitution{},          {.steady = {.tolerance = 1e-6, .max_periods = 200}},
+  return {active_scene(0.9),      Restitution{},          {.steady = {.tolerance = 1e-6, .max_periods = 200}},
           {&Scene::x0, -1, 1, 5}, {&Scene::v0, -1, 1, 4}, {}};
 }
 BasinResponse asked_map() {
@@ -57,7 +47,7 @@ BasinResponse asked_map() {
   return map;
 }
 OrbitsResponse asked_orbits() {
-  OrbitsResponse orbits{.scene = active_scene(),
+  OrbitsResponse orbits{.scene = active_scene(0.9),
                         .engine = Restitution{},
                         .rule = {},
                         .range = {Parameter::force_amplitude, 0.05, 0.12},
@@ -78,7 +68,7 @@ OrbitsResponse several_orbits() {
   orbits.starts = {{{}, 0, {}, release_of(orbits.scene)}};
   return orbits;
 }
-LyapunovResponse asked_exponents() { return {active_scene(), Restitution{}, 40, 10, {}}; }
+LyapunovResponse asked_exponents() { return {active_scene(0.9), Restitution{}, 40, 10, {}}; }
 
 // With something else in it, and the digest that belongs to it.
 std::string altered(std::string text, const std::string& from, const std::string& to) {
@@ -96,15 +86,33 @@ std::string changed(const std::string& text, const std::string& column, double (
   return sealed(whole.substr(0, whole.rfind(seal_begin)));
 }
 
+std::string first_of(const std::vector<Problem>& problems) {
+  return problems.empty() ? "" : problems[0].field + ' ' + problems[0].message;
+}
 std::string complaint(const std::string& text) {
   try {
-    const Response response = parse_response("f", text);
-    const std::vector<Problem> problems = inconsistencies_of(response);
-    return problems.empty() ? "" : problems[0].field + ' ' + problems[0].message;
+    return first_of(inconsistencies_of(parse_response("f", text)));
   } catch (const InputError& error) {
     return error.problems()[0];
   }
 }
+void says(const std::string& text, const std::string& wanted) {
+  const std::string said = complaint(text);
+  INFO(said);
+  CHECK(said.find(wanted) != std::string::npos);
+}
+double one_more(double n) { return n + 1; }
+
+// What is found for what is asked, its text, and what that reads back as.
+template <class Kind>
+struct WrittenAndRead {
+  Kind found, read;
+  std::string text;
+  explicit WrittenAndRead(const Kind& asked)
+      : found(std::get<Kind>(found_for(asked, 1))), read(found), text(response_text(found)) {
+    read = std::get<Kind>(parse_response("f", text));
+  }
+};
 
 TEST_CASE("a response of each kind reads back as it was written, byte by byte") {
   for (const Response& asked : {Response(asked_sweep()), Response(several_sweep()), Response(ended_sweep()),
@@ -121,27 +129,21 @@ TEST_CASE("a response of each kind reads back as it was written, byte by byte") 
 }
 
 TEST_CASE("of several dampers each has its columns, whose sums are those of all") {
-  const auto found = std::get<SweepResponse>(found_for(several_sweep(), 1));
-  const std::string text = response_text(found);
-  const auto read = std::get<SweepResponse>(parse_response("f", text));
+  const auto& [found, read, text] = WrittenAndRead(several_sweep());
   CHECK(read.scene.dampers == found.scene.dampers);
   for (std::size_t i = 0; i < 4; ++i) {
     CHECK(read.sweeps[0].up[i].impacts_by_damper == found.sweeps[0].up[i].impacts_by_damper);
     CHECK(read.sweeps[0].up[i].state.dampers[1].y == found.sweeps[0].up[i].state.dampers[1].y);
   }
-  CHECK(complaint(changed(text, "impacts_left", [](double n) {
-          return n + 1;
-        })).find("the sum over the dampers") != std::string::npos);
-  CHECK(complaint(altered(text, "\"dampers\": [{\"y\": 0.5, \"w\": 0}, ", "\"dampers\": ["))
-            .find("must be as many as in the scene, 2, got 1") != std::string::npos);
-  CHECK(complaint(altered(text, "{\"damping_ratio\"", "{\"mass_ratio\": 1, \"damping_ratio\""))
-            .find("must not be given beside dampers") != std::string::npos);
+  says(changed(text, "impacts_left", one_more), "the sum over the dampers");
+  says(altered(text, R"("dampers": [{"y": 0.5, "w": 0}, )", R"("dampers": [)"),
+       "must be as many as in the scene, 2, got 1");
+  says(altered(text, R"({"damping_ratio")", R"({"mass_ratio": 1, "damping_ratio")"),
+       "must not be given beside dampers");
 }
 
 TEST_CASE("branches of several dampers tell state and impacts of each, whose sums are those of all") {
-  const auto found = std::get<OrbitsResponse>(found_for(several_orbits(), 1));
-  const std::string text = response_text(found);
-  const auto read = std::get<OrbitsResponse>(parse_response("f", text));
+  const auto& [found, read, text] = WrittenAndRead(several_orbits());
   REQUIRE_FALSE(found.branches.empty());
   const OrbitBranch &a = found.branches[0], &b = read.branches[0];
   REQUIRE(a.points.size() == b.points.size());
@@ -152,13 +154,9 @@ TEST_CASE("branches of several dampers tell state and impacts of each, whose sum
   CHECK(a.points[1].multipliers[3].re == b.points[1].multipliers[3].re);
   CHECK(a.events[0].state.dampers[0].w == b.events[0].state.dampers[0].w);
   CHECK(a.points[1].state.x != 0);
-  CHECK(
-      complaint(changed(text, "impacts_left", [](double n) {
-        return n + 1;
-      })).find("/branches/0/impacts_left/0 must be 2, the sum over the dampers, got 3") != std::string::npos);
-  CHECK(
-      complaint(altered(text, "{\"y\": 0.4, \"w\": 0.2}, ", "")).find("as many as in the scene, 2, got 1") !=
-      std::string::npos);
+  says(changed(text, "impacts_left", one_more),
+       "/branches/0/impacts_left/0 must be 2, the sum over the dampers, got 3");
+  says(altered(text, R"({"y": 0.4, "w": 0.2}, )", ""), "as many as in the scene, 2, got 1");
 }
 
 TEST_CASE("the impacts of an orbit are those of a run from its state") {
@@ -181,15 +179,12 @@ TEST_CASE("the impacts of an orbit are those of a run from its state") {
 TEST_CASE("what is swept may be a number of one of several dampers") {
   SweepResponse asked = several_sweep();
   asked.axis = {{&SceneDamper::clearance, 1}, 0.5, 2, 4};
-  const std::string text = response_text(found_for(asked, 1));
-  CHECK(text.find("\"number\": \"clearance_2\"") != std::string::npos);
-  const auto read = std::get<SweepResponse>(parse_response("f", text));
+  const auto& [found, read, text] = WrittenAndRead(asked);
+  CHECK(text.find(R"("number": "clearance_2")") != std::string::npos);
   CHECK(read.axis.number == asked.axis.number);
   CHECK(response_text(read) == text);
-  CHECK(complaint(altered(text, "clearance_2", "clearance_3")).find("/axis/number: unknown") !=
-        std::string::npos);
-  CHECK(complaint(altered(text, "clearance_2", "mass_ratio")).find("/axis/number: unknown") !=
-        std::string::npos);
+  for (const char* other : {"clearance_3", "mass_ratio"})
+    says(altered(text, "clearance_2", other), "/axis/number: unknown");
 }
 
 TEST_CASE("a map of several dampers tells the impacts of each, whose sums are those of all") {
@@ -197,22 +192,21 @@ TEST_CASE("a map of several dampers tells the impacts of each, whose sums are th
   asked.scene.damping_ratio = 0.05;
   asked.scene.dampers = {{.mass_ratio = 0.06, .y0 = 0.5}, {.mass_ratio = 0.04, .clearance = 1.5, .y0 = 0.7}};
   asked.second = {{&SceneDamper::y0, 1}, 0, 1.5, 4};
-  const std::string text = response_text(found_for(asked, 1));
-  const auto read = std::get<BasinResponse>(parse_response("f", text));
+  const auto& [found, read, text] = WrittenAndRead(asked);
   CHECK(response_text(read) == text);
   CHECK(read.second.number == asked.second.number);
   REQUIRE_FALSE(read.basin.attractors.empty());
   CHECK(read.basin.attractors[0].impacts_by_damper.size() == 2);
   CHECK(read.basin.attractors[0].states[0].dampers.size() == 2);
   const std::int64_t left = read.basin.attractors[0].impacts[0];
-  CHECK(complaint(altered(text, "\"impacts_left\": " + std::to_string(left),
-                          "\"impacts_left\": " + std::to_string(left + 1)))
-            .find("/dampers: must be hit as often as all") != std::string::npos);
+  const std::string impacts = R"("impacts_left": )";
+  says(altered(text, impacts + std::to_string(left), impacts + std::to_string(left + 1)),
+       "/dampers: must be hit as often as all");
 }
 
 TEST_CASE("what is read has the numbers that were found") {
-  const auto found = std::get<SweepResponse>(found_for(asked_sweep(), 1));
-  const auto read = std::get<SweepResponse>(parse_response("f", response_text(found)));
+  const WrittenAndRead sweep(asked_sweep());
+  const SweepResponse &found = sweep.found, &read = sweep.read;
   REQUIRE(read.sweeps.size() == 2);
   CHECK(read.scene == found.scene);
   CHECK(read.engine == found.engine);
@@ -239,22 +233,19 @@ TEST_CASE("what is read has the numbers that were found") {
   CHECK(periodic > 0);
   CHECK(open > 0);
 
-  const auto ended = std::get<SweepResponse>(found_for(ended_sweep(), 1));
-  const auto read_ended = std::get<SweepResponse>(parse_response("f", response_text(ended)));
-  CHECK(read_ended.sweeps[0].up[0].stop_reason == StopReason::impact_budget);
-  CHECK(!read_ended.sweeps[0].up[0].means);
+  const WrittenAndRead ended(ended_sweep());
+  CHECK(ended.read.sweeps[0].up[0].stop_reason == StopReason::impact_budget);
+  CHECK(!ended.read.sweeps[0].up[0].means);
 
-  const auto basin = std::get<BasinResponse>(found_for(asked_basin(), 1));
-  const auto read_basin = std::get<BasinResponse>(parse_response("f", response_text(basin)));
-  CHECK(read_basin.basin.attractor == basin.basin.attractor);
-  REQUIRE(!basin.basin.attractors.empty());
-  CHECK(read_basin.basin.attractors[0].states[0].v == basin.basin.attractors[0].states[0].v);
+  const WrittenAndRead basin(asked_basin());
+  CHECK(basin.read.basin.attractor == basin.found.basin.attractor);
+  REQUIRE(!basin.found.basin.attractors.empty());
+  CHECK(basin.read.basin.attractors[0].states[0].v == basin.found.basin.attractors[0].states[0].v);
 
-  const auto orbits = std::get<OrbitsResponse>(found_for(asked_orbits(), 1));
-  const auto read_orbits = std::get<OrbitsResponse>(parse_response("f", response_text(orbits)));
-  REQUIRE(orbits.branches.size() > 1);
-  CHECK(read_orbits.range.parameter == Parameter::force_amplitude);
-  const OrbitBranch &a = orbits.branches[1], &b = read_orbits.branches[1];
+  const WrittenAndRead orbits(asked_orbits());
+  REQUIRE(orbits.found.branches.size() > 1);
+  CHECK(orbits.read.range.parameter == Parameter::force_amplitude);
+  const OrbitBranch &a = orbits.found.branches[1], &b = orbits.read.branches[1];
   CHECK(a.origin == b.origin);
   CHECK(a.event == b.event);
   CHECK(a.end == b.end);
@@ -278,27 +269,22 @@ TEST_CASE("what is asked for differs in each part that is another") {
     return found;
   };
   CHECK(differences(asked).empty());
-  SweepResponse other = asked;
-  other.scene.damper().restitution = 0.7;
-  CHECK(differences(other) == "/scene/restitution ");
-  other = asked;
-  other.engine = Exact{};
-  CHECK(differences(other) == "/engine ");
-  other = asked;
-  other.rule.mean_periods = 41;
-  CHECK(differences(other) == "/rule ");
-  other = asked;
-  other.axis.count = 5;
-  CHECK(differences(other) == "/axis ");
-  other = asked;
-  other.sweeps[1].start.dampers[0].w = 1;
-  CHECK(differences(other) == "/sweeps/1/start ");
-  other = asked;
-  other.sweeps[1].start.nudge = 2e-3;
-  CHECK(differences(other) == "/sweeps/1/nudge ");
-  other = asked;
-  other.sweeps.pop_back();
-  CHECK(differences(other) == "/sweeps/1/start /sweeps/1/nudge ");
+  struct Change {
+    const char* fields;
+    void (*make)(SweepResponse&);
+  };
+  for (const auto& [fields, make] :
+       {Change{"/scene/restitution ", [](SweepResponse& other) { other.scene.damper().restitution = 0.7; }},
+        {"/engine ", [](SweepResponse& other) { other.engine = Exact{}; }},
+        {"/rule ", [](SweepResponse& other) { other.rule.mean_periods = 41; }},
+        {"/axis ", [](SweepResponse& other) { other.axis.count = 5; }},
+        {"/sweeps/1/start ", [](SweepResponse& other) { other.sweeps[1].start.dampers[0].w = 1; }},
+        {"/sweeps/1/nudge ", [](SweepResponse& other) { other.sweeps[1].start.nudge = 2e-3; }},
+        {"/sweeps/1/start /sweeps/1/nudge ", [](SweepResponse& other) { other.sweeps.pop_back(); }}}) {
+    SweepResponse other = asked;
+    make(other);
+    CHECK(differences(other) == fields);
+  }
   OrbitsResponse orbits = asked_orbits();
   orbits.range.to = 0.13;
   const auto a = asked_of(asked_orbits()), b = asked_of(orbits);
@@ -309,13 +295,8 @@ TEST_CASE("an altered response is noticed by its digest, and then by what follow
   const std::string text = response_text(found_for(asked_sweep(), 1));
   std::string other = text;
   other.replace(other.find("\"x\": 1,"), 7, "\"x\": 2,");
-  CHECK(complaint(other).find("/provenance/sha256: must be the digest") != std::string::npos);
+  says(other, "/provenance/sha256: must be the digest");
 
-  const auto says = [](const std::string& altered_text, const std::string& wanted) {
-    const std::string said = complaint(altered_text);
-    INFO(said);
-    CHECK(said.find(wanted) != std::string::npos);
-  };
   says(altered(text, "\"kind\": \"sweep\"", "\"kind\": \"swept\""), "/kind: must be one of");
   says(altered(text, "\"restitution\", \"acc", "\"cem\", \"acc"), "/engine");
   says(altered(text, "\"mass_ratio\": 0.1", "\"mass_ratio\": 0.2"), "/locked_amplitude/0: must be");
@@ -332,7 +313,7 @@ TEST_CASE("an altered response is noticed by its digest, and then by what follow
   const auto percent = [](double value) { return value * 1.01; };
   for (const char* column : {"power", "fundamental", "lag_deg"})
     says(changed(text, column, percent), "/sweeps/0/up/power/0");
-  says(changed(text, "measured_periods", [](double value) { return value + 1; }), "measured_periods/0");
+  says(changed(text, "measured_periods", one_more), "measured_periods/0");
   says(changed(text, "symmetric", [](double) { return 0.5; }), "must be a whole number");
   says(changed(text, "transient_periods", [](double) { return 301.0; }), "must be <= max_periods");
   says(changed(text, "viscous_power", [](double value) { return -value; }), "viscous_power/0");
@@ -347,9 +328,9 @@ TEST_CASE("the powers of a periodic motion balance, and no other may scatter") {
   REQUIRE(periodic);
   const SteadyState before = *periodic;
   const auto said = [&] {
-    const std::vector<Problem> problems = inconsistencies_of(response);
+    const std::string first = first_of(inconsistencies_of(response));
     *periodic = before;
-    return problems.empty() ? std::string() : problems[0].field + ' ' + problems[0].message;
+    return first;
   };
   CHECK(said().empty());
   periodic->means->impact_power *= 1.01;
@@ -367,11 +348,6 @@ TEST_CASE("the powers of a periodic motion balance, and no other may scatter") {
 }
 
 TEST_CASE("counts of a map and the points of orbits agree with the rest") {
-  const auto says = [](const std::string& altered_text, const std::string& wanted) {
-    const std::string said = complaint(altered_text);
-    INFO(said);
-    CHECK(said.find(wanted) != std::string::npos);
-  };
   const Response map = found_for(asked_basin(), 1);
   const std::string text = response_text(map);
   const auto& attractors = std::get<BasinResponse>(map).basin.attractors;
@@ -387,7 +363,7 @@ TEST_CASE("counts of a map and the points of orbits agree with the rest") {
   says(changed(orbits, "stable", [](double value) { return 1 - value; }), "/branches/0/stable/0");
   says(changed(orbits, "multiplier_1_re", [](double) { return 0.0; }), "/branches/0/");
   says(changed(orbits, "amplitude", [](double value) { return value / 100; }), "/branches/0/x/0");
-  says(changed(orbits, "impacts_left", [](double value) { return value + 1; }), "/branches/0/symmetric/0");
+  says(changed(orbits, "impacts_left", one_more), "/branches/0/symmetric/0");
   says(altered(orbits, "\"branch\": 0", "\"branch\": 99"), "/starts/0/branch");
   says(altered(orbits, "\"event\": 0", "\"event\": 99"), "/event must be the index");
 

@@ -11,13 +11,14 @@
 #include "impact_damper/responses/response_file.hpp"
 #include "impact_damper/simulate.hpp"
 #include "shared_scenes.hpp"
+#include "steady_helpers.hpp"
 
 namespace {
 
 using namespace impact_damper;
 using std::numbers::pi;
 
-const Engine rigid = Restitution{}, compliant = Exact{};
+const Engine &rigid = rigid_and_compliant[0], &compliant = rigid_and_compliant[1];
 
 SteadyState settled(const Scene& scene, const Engine& engine, const SteadyRule& rule = {}) {
   return ForcedScene(scene, engine).settle(release_of(scene), rule);
@@ -25,33 +26,24 @@ SteadyState settled(const Scene& scene, const Engine& engine, const SteadyRule& 
 
 double period_of(const Scene& scene) { return 2 * pi / scene.force_frequency; }
 
-// The motion from `state` at phase 0 on, at `count` instants of `periods` periods of the force, both ends
-// included.
-History followed(Scene scene, const Engine& engine, const SceneState& state, double periods,
+// The run from `state` at phase 0 on, over so many periods of the force.
+Run run_from(const Scene& scene, const Engine& engine, const SceneState& state, double periods,
+             const Record& record) {
+  Scene from = released_from(scene, state);
+  from.until_time = periods * period_of(scene);
+  return simulate(from, engine, record);
+}
+
+// Its motion, at `count` instants of `periods` periods of the force, both ends included.
+History followed(const Scene& scene, const Engine& engine, const SceneState& state, double periods,
                  std::int64_t count) {
-  scene = released_from(scene, state);
-  scene.until_time = periods * period_of(scene);
-  Record record;
-  record.half_cycles = false;
-  record.history = {{0, *scene.until_time, count}};
-  return *simulate(scene, engine, record).history;
-}
-
-SceneState state_at(const History& history, std::size_t i) {
-  return {history.x[i], history.v[i], history.dampers[0].y[i], history.dampers[0].w[i]};
-}
-
-// The release makes the mass strike at once.
-Scene active_scene(double frequency) {
-  return {.damping_ratio = 0.01,
-          .x0 = 1,
-          .force_amplitude = 0.05,
-          .force_frequency = frequency,
-          .dampers = {{.mass_ratio = 0.1, .y0 = 0.5}}};
+  const double end = periods * period_of(scene);
+  return *run_from(scene, engine, state, periods, {.half_cycles = false, .history = {{0, end, count}}})
+              .history;
 }
 
 TEST_CASE("a mass that is never struck leaves the closed form of the empty box") {
-  for (const Engine& engine : {rigid, compliant}) {
+  for (const Engine& engine : rigid_and_compliant) {
     for (const double frequency : {0.3, 0.9, 1.0, 1.7}) {
       for (const auto& [f0, y0] : {std::pair{0.01, 0.5}, {-0.01, 0.5}, {0.01, 0.4}}) {
         const Scene scene{.damping_ratio = 0.05,
@@ -169,7 +161,7 @@ TEST_CASE("two symmetric impacts in a period are those of the closed form") {
 }
 
 TEST_CASE("means and phase are those of sums over a finely sampled motion") {
-  for (const Engine& engine : {rigid, compliant}) {
+  for (const Engine& engine : rigid_and_compliant) {
     for (const double f0 : {0.05, -0.05, 8.0}) {  // in the last the mass sticks for a while
       Scene scene = active_scene(0.9);
       scene.force_amplitude = f0;
@@ -204,21 +196,17 @@ TEST_CASE("means and phase are those of sums over a finely sampled motion") {
 }
 
 TEST_CASE("a motion of two periods is found to be one, and a direct run repeats so") {
-  for (const Engine& engine : {rigid, compliant}) {
+  for (const Engine& engine : rigid_and_compliant) {
     const Scene scene = active_scene(0.9);
     const SteadyState steady = settled(scene, engine);
     REQUIRE(steady.period == 2);
     CHECK(!steady.symmetric);
     const History history = followed(scene, engine, steady.state, 40, 41);
     for (std::size_t i = 0; i + 2 < history.time.size(); ++i) {
-      CHECK(distance(state_at(history, i), state_at(history, i + 2)) < 1e-8);
-      CHECK(distance(state_at(history, i), state_at(history, i + 1)) > 1e-2);
+      CHECK(distance(state_in(history, i), state_in(history, i + 2)) < 1e-8);
+      CHECK(distance(state_in(history, i), state_in(history, i + 1)) > 1e-2);
     }
-    Scene counted = released_from(scene, steady.state);
-    counted.until_time = 20 * period_of(scene);
-    Record record;
-    record.impacts = true;
-    const Run run = simulate(counted, engine, record);
+    const Run run = run_from(scene, engine, steady.state, 20, {.impacts = true});
     CHECK(std::int64_t(run.impacts->time.size()) == 10 * (steady.impacts[0] + steady.impacts[1]));
     CHECK(std::ranges::count(run.impacts->wall, Wall::right) == 10 * steady.impacts[1]);
   }
@@ -236,16 +224,12 @@ TEST_CASE("a chaotic motion is not taken for a periodic one, and its means are t
   near.x += 1e-10;
   const History one = followed(scene, rigid, steady.state, 400, 401),
                 other = followed(scene, rigid, near, 400, 401);
-  CHECK(distance(state_at(one, 1), state_at(other, 1)) < 1e-8);
-  CHECK(distance(state_at(one, 400), state_at(other, 400)) > 1e-3);
-  for (std::size_t m = 1; m <= 16; ++m) CHECK(distance(state_at(one, 400), state_at(one, 400 - m)) > 1e-6);
+  CHECK(distance(state_in(one, 1), state_in(other, 1)) < 1e-8);
+  CHECK(distance(state_in(one, 400), state_in(other, 400)) > 1e-3);
+  for (std::size_t m = 1; m <= 16; ++m) CHECK(distance(state_in(one, 400), state_in(one, 400 - m)) > 1e-6);
   // Means over 20 000 further periods, which scatter far less, by the energy that one long run records.
-  Scene further = released_from(scene, steady.state);
-  further.until_time = 20000 * period_of(scene);
-  Record record;
-  record.energy = true;
-  const Run run = simulate(further, rigid, record);
-  const double power = run.energy->forcing_work / *further.until_time;
+  const Run run = run_from(scene, rigid, steady.state, 20000, {.energy = true});
+  const double power = run.energy->forcing_work / (20000 * period_of(scene));
   // Of a mean of blocks the scatter is that of one, divided by the square root of their number. Four of them,
   // as ten blocks tell the scatter of one to a quarter only.
   CHECK(std::abs(power - steady.means->power) < 4 * steady.power_scatter / std::sqrt(10.0));
@@ -255,7 +239,7 @@ TEST_CASE("a chaotic motion is not taken for a periodic one, and its means are t
 }
 
 TEST_CASE("means of a motion that is not periodic are those of one run over the same periods") {
-  for (const Engine& engine : {rigid, compliant}) {
+  for (const Engine& engine : rigid_and_compliant) {
     const Scene scene = active_scene(0.94);
     const ForcedScene forced(scene, engine);
     const SteadyState steady = forced.settle(release_of(scene), {.max_periods = 16, .mean_periods = 14});
@@ -273,12 +257,7 @@ TEST_CASE("means of a motion that is not periodic are those of one run over the 
           weight * history.x[i] * std::polar(2.0, -scene.force_frequency * history.time[i]) / double(count);
       largest = std::max(largest, std::abs(history.x[i]));
     }
-    Scene run_of_it = released_from(scene, begin);
-    run_of_it.until_time = 14 * period_of(scene);
-    Record record;
-    record.energy = true;
-    record.impacts = true;
-    const Run run = simulate(run_of_it, engine, record);
+    const Run run = run_from(scene, engine, begin, 14, {.impacts = true, .energy = true});
     const std::complex<double> c = sum * std::complex<double>(0, 1);
     // Each block begins anew, and chaos amplifies its rounding; the sums' own error is of the second order.
     CHECK(steady.means->fundamental == doctest::Approx(std::abs(c)).epsilon(1e-5));
@@ -286,14 +265,14 @@ TEST_CASE("means of a motion that is not periodic are those of one run over the 
     CHECK(steady.means->amplitude <= largest + 1e-5);  // a half cycle that a block cuts may hold the largest
     CHECK(steady.means->amplitude > 0.9 * largest);
     CHECK(steady.means->power ==
-          doctest::Approx(run.energy->forcing_work / *run_of_it.until_time).epsilon(1e-6));
+          doctest::Approx(run.energy->forcing_work / (14 * period_of(scene))).epsilon(1e-6));
     CHECK(steady.impacts[0] == std::ranges::count(run.impacts->wall, Wall::left));
     CHECK(steady.impacts[1] == std::ranges::count(run.impacts->wall, Wall::right));
   }
 }
 
 TEST_CASE("a list of one damper, and the halves of one, have the steady states of that damper") {
-  for (const Engine& engine : {rigid, compliant}) {
+  for (const Engine& engine : rigid_and_compliant) {
     const Scene scene = active_scene(1.01);
     Scene halves = scene;
     halves.dampers.assign(
@@ -323,29 +302,27 @@ TEST_CASE("a steady motion of several dampers is that of one run, and carries it
   Scene scene = active_scene(1);
   scene.x0 = 0;
   scene.dampers = {{.mass_ratio = 0.03, .y0 = 0.5}, {.mass_ratio = 0.02, .clearance = 2.5, .y0 = 1}};
-  for (const Engine& engine : {rigid, compliant}) {
+  for (const Engine& engine : rigid_and_compliant) {
     const ForcedScene forced(scene, engine);
     const auto passed = *forced.pass_periods(release_of(scene));
-    Scene all = scene;
-    all.until_time = 4 * period_of(scene);
-    const Run run = simulate(all, engine, {.half_cycles = false, .history = {{0, *all.until_time, 5}}});
+    const History history = followed(scene, engine, release_of(scene), 4, 5);
     for (std::size_t i = 0; i < 4; ++i) {
-      CHECK(std::abs(run.history->x[i + 1] - passed.states[i].x) < 1e-9);
+      CHECK(std::abs(history.x[i + 1] - passed.states[i].x) < 1e-9);
       for (std::size_t n = 0; n < 2; ++n)
-        CHECK(std::abs(run.history->dampers[n].y[i + 1] - passed.states[i].dampers[n].y) < 1e-9);
+        CHECK(std::abs(history.dampers[n].y[i + 1] - passed.states[i].dampers[n].y) < 1e-9);
     }
     const SteadyRule few{.tolerance = 1e-8, .max_periods = 300, .mean_periods = 20};
     const Sweep both = sweep(scene, engine, {&Scene::force_frequency, 0.98, 1, 3}, few, {release_of(scene)},
-                             1, [](std::int64_t) {})[0];
+                             1, no_progress)[0];
     CHECK(both.up.back().state.dampers.size() == 2);
     const ForcedScene last(scene, engine);  // whose frequency is the last one
     const SteadyState again = last.settle(both.up[1].state, few);
     CHECK(again.state.x == both.up[2].state.x);
     CHECK(again.state.dampers[1].y == both.up[2].state.dampers[1].y);
   }
-  CHECK_THROWS_AS(sweep(scene, rigid, {&SceneDamper::mass_ratio, 0.1, 0.2, 2}, {}, {release_of(scene)}, 1,
-                        [](std::int64_t) {}),
-                  InvalidArguments);
+  CHECK_THROWS_AS(
+      sweep(scene, rigid, {&SceneDamper::mass_ratio, 0.1, 0.2, 2}, {}, {release_of(scene)}, 1, no_progress),
+      InvalidArguments);
 }
 
 TEST_CASE("a state that rounding has put beyond a rigid wall is on it") {
@@ -380,8 +357,8 @@ TEST_CASE("up and down differ where the mass may lie idle") {
   scene.x0 = 0;
   scene.damping_ratio = 0.02;
   scene.force_amplitude = 0.03;  // beyond 1/2 at resonance, where the mass is struck at last
-  const auto sweeps = sweep(scene, rigid, {&Scene::force_frequency, 0.9, 1.1, 11}, {}, {release_of(scene)}, 1,
-                            [](std::int64_t) {});
+  const auto sweeps =
+      sweep(scene, rigid, {&Scene::force_frequency, 0.9, 1.1, 11}, {}, {release_of(scene)}, 1, no_progress);
   REQUIRE(sweeps.size() == 1);
   const SteadyState &up = sweeps[0].up.front(), &down = sweeps[0].down.front();
   CHECK(up.impacts == ImpactCounts{0, 0});
@@ -396,13 +373,10 @@ TEST_CASE("a sweep of the clearance of one damper passes over 1, where the scene
   Scene scene = active_scene(0.9);
   scene.damper().clearance = 1.5;
   const Axis axis{{&SceneDamper::clearance, 0}, 0.5, 1.5, 3};
-  for (const Engine& engine : {rigid, compliant}) {
-    const SweepResponse found{.scene = scene,
-                              .engine = engine,
-                              .rule = {.max_periods = 500},
-                              .axis = axis,
-                              .sweeps = sweep(scene, engine, axis, {.max_periods = 500}, {release_of(scene)},
-                                              1, [](std::int64_t) {})};
+  for (const Engine& engine : rigid_and_compliant) {
+    const SteadyRule rule{.max_periods = 500};
+    const SweepResponse found{scene, engine, rule, axis,
+                              sweep(scene, engine, axis, rule, {release_of(scene)}, 1, no_progress)};
     const Sweep& both = found.sweeps[0];
     for (const std::vector<SteadyState>& way : {both.up, both.down}) {
       CHECK(has_one_damper(axis.at(scene, 1)));
@@ -424,8 +398,7 @@ TEST_CASE("the way down begins where the way up ended") {
   const Scene scene = active_scene(1);
   const Axis axis{&Scene::force_frequency, 0.95, 0.97, 2};
   const SceneState from = release_of(scene);
-  const auto sweeps =
-      sweep(scene, rigid, axis, {.max_periods = 50}, {from, {from, 1e-3}}, 1, [](std::int64_t) {});
+  const auto sweeps = sweep(scene, rigid, axis, {.max_periods = 50}, {from, {from, 1e-3}}, 1, no_progress);
   const auto again = [&](std::int64_t i, SceneState state, double nudge) {
     state.x += nudge;
     return ForcedScene(axis.at(scene, i), rigid).settle(state, {.max_periods = 50}).state;
@@ -479,10 +452,9 @@ TEST_CASE("a sweep varies a number of one of several dampers, whose mass keeps i
   CHECK(clearance.at(scene, 2).dampers[1].clearance == 2);
   CHECK(restitution.at(scene, 0).dampers[0].restitution == 0.3);
   const SteadyRule few{.max_periods = 40, .mean_periods = 20};
-  const auto nothing = [](std::int64_t) {};
-  for (const Engine& engine : {rigid, compliant}) {
+  for (const Engine& engine : rigid_and_compliant) {
     for (const Axis& axis : {clearance, restitution}) {
-      const auto sweeps = sweep(scene, engine, axis, few, {release_of(scene)}, 1, nothing);
+      const auto sweeps = sweep(scene, engine, axis, few, {release_of(scene)}, 1, no_progress);
       const std::vector<SteadyState>& up = sweeps[0].up;
       REQUIRE(up.size() == 3);
       for (const std::int64_t i : {1, 2}) {
@@ -493,15 +465,15 @@ TEST_CASE("a sweep varies a number of one of several dampers, whose mass keeps i
       }
     }
   }
-  CHECK_THROWS_AS(
-      sweep(scene, rigid, {{&SceneDamper::clearance, 2}, 0.4, 2, 3}, few, {release_of(scene)}, 1, nothing),
-      InvalidArguments);
+  CHECK_THROWS_AS(sweep(scene, rigid, {{&SceneDamper::clearance, 2}, 0.4, 2, 3}, few, {release_of(scene)}, 1,
+                        no_progress),
+                  InvalidArguments);
   scene.dampers.clear();
-  CHECK_THROWS_AS(sweep(scene, rigid, clearance, few, {release_of(scene)}, 1, nothing), InvalidArguments);
+  CHECK_THROWS_AS(sweep(scene, rigid, clearance, few, {release_of(scene)}, 1, no_progress), InvalidArguments);
 }
 
 TEST_CASE("the mirror image of a scene has the mirror image of its response") {
-  for (const Engine& engine : {rigid, compliant}) {
+  for (const Engine& engine : rigid_and_compliant) {
     Scene scene = active_scene(0.9);
     scene.x0 = 0.3;
     const SteadyState steady = settled(scene, engine);
@@ -519,7 +491,7 @@ TEST_CASE("the mirror image of a scene has the mirror image of its response") {
 }
 
 TEST_CASE("states from period to period are those of one run") {
-  for (const Engine& engine : {rigid, compliant}) {
+  for (const Engine& engine : rigid_and_compliant) {
     Scene scene = active_scene(0.97);
     scene.damping_ratio = 0.1;  // steady, so that rounding errors are not amplified
     scene.force_amplitude = 4;  // and in contact for long
@@ -527,8 +499,8 @@ TEST_CASE("states from period to period are those of one run") {
     const auto more = *ForcedScene(scene, engine).pass_periods(passed.states.back());
     const History history = followed(scene, engine, release_of(scene), 16, 17);
     for (std::size_t i = 0; i < 8; ++i) {
-      CHECK(distance(passed.states[i], state_at(history, i + 1)) < 1e-9);
-      CHECK(distance(more.states[i], state_at(history, i + 9)) < 1e-9);
+      CHECK(distance(passed.states[i], state_in(history, i + 1)) < 1e-9);
+      CHECK(distance(more.states[i], state_in(history, i + 9)) < 1e-9);
     }
   }
 }
@@ -555,7 +527,7 @@ TEST_CASE("the largest steady amplitude is where the free decay loses what the f
     const Axis axis{&Scene::force_frequency, 0.98725, 0.98975, 11};
     double largest = 0;
     for (const Sweep& each : sweep(scene, rigid, axis, {.max_periods = 2000, .mean_periods = 100},
-                                   {SceneState{3, 0, 0, 0}}, 1, [](std::int64_t) {})) {
+                                   {SceneState{3, 0, 0, 0}}, 1, no_progress)) {
       for (const SteadyState& steady : each.up) largest = std::max(largest, steady.means->fundamental);
       for (const SteadyState& steady : each.down) largest = std::max(largest, steady.means->fundamental);
     }
@@ -630,16 +602,12 @@ TEST_CASE("what does not shrink is not periodic") {
 }
 
 TEST_CASE("a budget of the engine ends a point, which then has no means") {
-  Scene scene = active_scene(0.9);
-  Exact few;
-  few.budget.max_impacts = 3;
-  SteadyState steady = settled(scene, few);
+  const Scene scene = active_scene(0.9);
+  SteadyState steady = settled(scene, Exact{.budget = {.max_impacts = 3}});
   CHECK(steady.stop_reason == StopReason::impact_budget);
   CHECK(!steady.means);
   CHECK(!steady.period);
-  few = {};
-  few.max_steps = 5;
-  steady = settled(scene, few);
+  steady = settled(scene, Exact{.max_steps = 5});
   CHECK(steady.stop_reason == StopReason::step_budget);
   CHECK(!steady.means);
 }
@@ -652,7 +620,7 @@ TEST_CASE("no result depends on the number of threads") {
   for (int i = 0; i < 12; ++i) starts.push_back({0.4 * i - 2, 0.1 * i, 0.08 * i, 0.2});
   std::string first;
   for (const std::int64_t threads : {1, 2, 5}) {
-    const auto sweeps = sweep(scene, compliant, axis, rule, nudged(starts, 0), threads, [](std::int64_t) {});
+    const auto sweeps = sweep(scene, compliant, axis, rule, nudged(starts, 0), threads, no_progress);
     const std::string text = response_text(SweepResponse{scene, compliant, rule, axis, sweeps});
     if (first.empty()) first = text;
     CHECK(text == first);
@@ -670,7 +638,6 @@ TEST_CASE("what is not valid is rejected") {
     }
     return names;
   };
-  const auto nothing = [](std::int64_t) {};
   Scene unforced = scene;
   unforced.force_amplitude = 0;
   CHECK(fields([&] { ForcedScene(unforced, rigid); }) == "force_amplitude ");
@@ -681,7 +648,7 @@ TEST_CASE("what is not valid is rejected") {
   CHECK(fields([&] { ForcedScene(outside, rigid); }) == "y0 ");
   CHECK(fields([&] { ForcedScene(outside, compliant); }).empty());
   CHECK(fields([&] {
-          sweep(scene, rigid, {&Scene::force_amplitude, -1, 1, 3}, {}, {release_of(scene)}, 1, nothing);
+          sweep(scene, rigid, {&Scene::force_amplitude, -1, 1, 3}, {}, {release_of(scene)}, 1, no_progress);
         }) == "force_amplitude ");
   const double nan = std::nan("");
   for (const SteadyRule& rule :
@@ -692,7 +659,8 @@ TEST_CASE("what is not valid is rejected") {
     REQUIRE(problems.size() == 1);
     const std::string named = problems[0].field + ' ';
     CHECK(fields([&] {
-            sweep(scene, rigid, {&Scene::force_amplitude, 0.1, 1, 3}, rule, {release_of(scene)}, 1, nothing);
+            sweep(scene, rigid, {&Scene::force_amplitude, 0.1, 1, 3}, rule, {release_of(scene)}, 1,
+                  no_progress);
           }) == named);
     CHECK(fields([&] {
             steady_states_along(scene, rigid, &Scene::force_amplitude, {0.1}, rule, release_of(scene), [] {});

@@ -10,6 +10,7 @@
 #include "impact_damper/orbits/poincare_map.hpp"
 #include "impact_damper/simulate.hpp"
 #include "reference.hpp"
+#include "steady_helpers.hpp"
 
 using namespace impact_damper;
 
@@ -38,10 +39,7 @@ TEST_CASE("the restitution engine repeats the motion after half a period, mirror
       if (image.impacts.size() != 1) continue;  // a wall was in the way
       ++compared;
       // The closed form is a difference of the linear response and a transient, each as large as that.
-      const double linear =
-          std::fabs(scene.force_amplitude) / std::hypot(1 - scene.force_frequency * scene.force_frequency,
-                                                        2 * scene.damping_ratio * scene.force_frequency);
-      const double scale = 1 + linear, sensitivity = 1 + 1 / orbit.impact_speed;
+      const double scale = 1 + linear_amplitude(scene), sensitivity = 1 + 1 / orbit.impact_speed;
       CHECK(std::fabs(image.state.x - orbit.state.x) < 1e-12 * scale * sensitivity);
       CHECK(std::fabs(image.state.v - orbit.state.v) < 1e-12 * scale * sensitivity);
       CHECK(std::fabs(image.state.dampers[0].y - orbit.state.y) < 1e-12 * scale * sensitivity);
@@ -71,12 +69,8 @@ TEST_CASE("the restitution engine repeats the motion after half a period, mirror
 TEST_CASE("a light secondary mass at resonance impacts as in the theory without a force") {
   for (const double e : {0.3, 0.6, 0.9}) {
     for (const double amplitude : {0.2, 0.35, 0.5}) {
-      Scene scene;
-      scene.damper().mass_ratio = 1e-9;
+      Scene scene = forced_scene(1e-9, 0.02, 1, amplitude * 2 * 0.02);
       scene.damper().restitution = e;
-      scene.damping_ratio = 0.02;
-      scene.force_frequency = 1;
-      scene.force_amplitude = amplitude * 2 * scene.damping_ratio;
       const auto expected = single_impact(e, amplitude);
       const auto found = two_impact_orbits(scene);
       REQUIRE(expected.has_value() == !found.empty());
@@ -88,20 +82,12 @@ TEST_CASE("a light secondary mass at resonance impacts as in the theory without 
 }
 
 TEST_CASE("against a heavy secondary mass the box is stopped at 1/2 on either side") {
-  Scene scene;
-  scene.damper().mass_ratio = 1e6;
-  scene.damping_ratio = 0.05;
-  scene.force_amplitude = 1;
-  scene.force_frequency = 1.5;
+  const Scene scene = forced_scene(1e6, 0.05, 1.5, 1);
   const auto all = two_impact_orbits(scene);
   REQUIRE(!all.empty());
-  const Run run = [&] {
-    Scene from = scene;
-    from.x0 = all[0].state.x, from.v0 = all[0].state.v, from.damper().y0 = all[0].state.y,
-    from.damper().w0 = all[0].state.w;
-    from.until_time = 20;
-    return simulate(from, Restitution{}, {.half_cycles = false, .impacts = true});
-  }();
+  Scene from = released_from(scene, all[0].state);
+  from.until_time = 20;
+  const Run run = simulate(from, Restitution{}, {.half_cycles = false, .impacts = true});
   REQUIRE(run.impacts->time.size() >= 4);
   for (std::size_t i = 0; i < 4; ++i)
     CHECK(std::fabs(run.impacts->displacement[i]) == doctest::Approx(0.5).epsilon(1e-5));
@@ -111,10 +97,7 @@ TEST_CASE("both orbits begin where the linear amplitude reaches its least") {
   int begun = 0;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     Scene scene = random_scene(seed);
-    const double linear =
-        std::fabs(scene.force_amplitude) / std::hypot(1 - scene.force_frequency * scene.force_frequency,
-                                                      2 * scene.damping_ratio * scene.force_frequency);
-    scene.force_amplitude *= least_linear_amplitude(scene) / linear * (1 - 1e-9);
+    scene.force_amplitude *= least_linear_amplitude(scene) / linear_amplitude(scene) * (1 - 1e-9);
     CHECK(two_impact_orbits(scene).empty());
     scene.force_amplitude *= 1 + 2e-9;
     const auto all = two_impact_orbits(scene);

@@ -15,6 +15,7 @@
 #include "impact_damper/simulate.hpp"
 #include "impact_damper/steady/steady_state.hpp"
 #include "reference.hpp"
+#include "steady_helpers.hpp"
 
 using namespace impact_damper;
 
@@ -87,14 +88,21 @@ std::optional<std::vector<double>> difference(const Scene& scene, const Engine& 
   return all;
 }
 
+// The change of a run's end by each number of the state at its beginning.
+std::vector<ChangeOfState> changes_of_end(const Scene& scene, const Engine& engine, const RecordedRun& run,
+                                          AlongRun* along = nullptr) {
+  std::vector<ChangeOfState> columns(dimensions_of(scene), ChangeOfState(dimensions_of(scene), 0.0));
+  for (std::size_t j = 0; j < columns.size(); ++j) columns[j][j] = 1;
+  carry_changes(*variational_coefficients(scene, engine), run, columns, {}, along);
+  return columns;
+}
+
 // By each number of the state, by the force's frequency and amplitude, and by the end.
 std::vector<ChangeOfState> derivative(const Scene& scene, const Engine& engine) {
   const RecordedRun run = ForcedScene(scene, engine).record(release_of(scene), *scene.until_time);
   REQUIRE(run.stop_reason == StopReason::time);
-  std::vector<ChangeOfState> columns(dimensions_of(scene), ChangeOfState(dimensions_of(scene), 0.0));
-  for (std::size_t j = 0; j < columns.size(); ++j) columns[j][j] = 1;
   AlongRun along;
-  carry_changes(*variational_coefficients(scene, engine), run, columns, {}, &along);
+  std::vector<ChangeOfState> columns = changes_of_end(scene, engine, run, &along);
   for (ChangeOfState* each : {&along.by_frequency, &along.by_amplitude, &along.rates_at_end})
     columns.push_back(*each);
   return columns;
@@ -179,14 +187,20 @@ Counts compare_derivatives(const Engine& engine, std::uint64_t seeds) {
 
 // Two dampers under a force: the first is struck in each half period, the second at times.
 Scene two_dampers() {
-  Scene scene;
-  scene.damping_ratio = 0.02;
-  scene.force_amplitude = 0.1;
-  scene.force_frequency = 0.95;
-  scene.x0 = 0.3;
-  scene.dampers.resize(2);
-  scene.dampers[0].mass_ratio = 0.05, scene.dampers[0].y0 = 0.4, scene.dampers[0].w0 = 0.2;
-  scene.dampers[1].mass_ratio = 0.03, scene.dampers[1].clearance = 1.7, scene.dampers[1].y0 = 0.7;
+  return {.damping_ratio = 0.02,
+          .x0 = 0.3,
+          .force_amplitude = 0.1,
+          .force_frequency = 0.95,
+          .dampers = {{.mass_ratio = 0.05, .y0 = 0.4, .w0 = 0.2},
+                      {.mass_ratio = 0.03, .clearance = 1.7, .y0 = 0.7}}};
+}
+
+// The same where a slow and strong force presses both to their walls.
+Scene sticking_dampers() {
+  Scene scene = two_dampers();
+  scene.force_frequency = 0.3;
+  scene.force_amplitude = 3;
+  for (SceneDamper& each : scene.dampers) each.restitution = 0.2;
   return scene;
 }
 
@@ -215,7 +229,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a list of one damper has the exponents of the scene without a list") {
-  for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})}) {
+  for (const Engine& engine : rigid_and_compliant) {
     for (const double frequency : {0.9, 0.5}) {
       Scene scene = two_dampers();
       scene.force_frequency = frequency;
@@ -234,7 +248,7 @@ TEST_CASE("a list of one damper has the exponents of the scene without a list") 
 TEST_CASE("the exponents of several dampers add up to the mean divergence") {
   const Scene scene = two_dampers();
   constexpr int periods = 60;
-  for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})}) {
+  for (const Engine& engine : rigid_and_compliant) {
     const LyapunovExponents found = lyapunov_exponents(scene, engine, periods);
     REQUIRE(found.exponents.size() == 6);
     double loss = 0, duration = 0;
@@ -279,10 +293,7 @@ TEST_CASE("on a stable motion of two dampers the largest exponent is that of its
 }
 
 TEST_CASE("masses that stick take two dimensions each that does so at the same time") {
-  Scene scene = two_dampers();
-  scene.force_frequency = 0.3;
-  scene.force_amplitude = 3;
-  for (SceneDamper& each : scene.dampers) each.restitution = 0.2;
+  Scene scene = sticking_dampers();
   CHECK(lyapunov_exponents(scene, Restitution{}, 20, 5).exponents.size() == 2);
   scene.dampers[1].clearance = 1000;  // never met
   scene.dampers[1].y0 = 500;
@@ -325,10 +336,7 @@ TEST_CASE("a mass that sticks before the periods that are averaged takes nothing
 }
 
 TEST_CASE("a mass whose chattering is complete sticks where the run ends before its accumulation point") {
-  Scene scene = two_dampers();
-  scene.force_frequency = 0.3;
-  scene.force_amplitude = 3;
-  for (SceneDamper& each : scene.dampers) each.restitution = 0.2;
+  Scene scene = sticking_dampers();
   Scene alone = scene;
   alone.dampers.resize(1);
   for (const Scene& each : {scene, alone}) {
@@ -342,11 +350,8 @@ TEST_CASE("a mass whose chattering is complete sticks where the run ends before 
     REQUIRE(last_impact < contact.begin);
     const RecordedRun cut = forced.record(release_of(each), last_impact + (contact.begin - last_impact) / 2);
     CHECK(cut.chain.contacts.empty());
-    std::vector<ChangeOfState> columns(dimensions_of(each), ChangeOfState(dimensions_of(each), 0.0));
-    for (std::size_t j = 0; j < columns.size(); ++j) columns[j][j] = 1;
-    carry_changes(*variational_coefficients(each, Restitution{}), cut, columns, {});
     const auto damper = std::size_t(contact.damper);
-    for (const ChangeOfState& column : columns) {
+    for (const ChangeOfState& column : changes_of_end(each, Restitution{}, cut)) {
       CHECK(column[index_of_y(damper)] == 0);
       CHECK(column[index_of_w(damper)] == 0);
       CHECK(column[0] != 0);

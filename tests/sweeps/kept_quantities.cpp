@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -37,29 +38,17 @@ double only(const KeptNumbers& numbers) {
 
 // Viscous damping and next to nothing else: x = 6 exp(-zeta t) (cos omega t + ...).
 Scene viscous_decay(double zeta) {
-  Scene scene;
-  scene.damper().mass_ratio = 1e-9;
-  scene.damping_ratio = zeta;
-  scene.until_amplitude = 0.5;
-  return scene;
+  return {.damping_ratio = zeta, .until_amplitude = 0.5, .dampers = {{.mass_ratio = 1e-9}}};
 }
 
-Scene paper_decay() {
-  Scene scene;
-  scene.until_amplitude = 0.03;
-  return scene;
-}
+const Scene paper_decay{.until_amplitude = 0.03};
+const std::array<Engine, 2> both{Exact{}, Restitution{}};
 
 }  // namespace
 
 TEST_CASE("without viscous damping the best damping is what it is with next to none") {
-  Scene scene;
-  scene.damper().mass_ratio = 0.3;
-  scene.damper().restitution = 0.2;
-  scene.x0 = 2;
-  scene.until_amplitude = 0.02;
-  Exact engine;
-  engine.budget.max_time = 3000;
+  Scene scene{.x0 = 2, .until_amplitude = 0.02, .dampers = {{.mass_ratio = 0.3, .restitution = 0.2}}};
+  const Exact engine{.budget = {.max_time = 3000}};
   const std::vector<std::string> best{"largest_loss_factor", "amplitude_of_largest_loss_factor"};
   scene.damping_ratio = 0;
   const KeptNumbers none = kept(scene, best, engine);
@@ -96,21 +85,17 @@ double last_time_of_viscous(double zeta, double level) {
     const double root = std::sqrt(zeta * zeta - 1), slow = root - zeta, fast = -root - zeta;
     return (slow * std::exp(fast * t) - fast * std::exp(slow * t)) / (slow - fast);
   };
-  double before = 0, after = 100;
+  double after = 100;
   while (!(std::abs(x(after)) < level && std::abs(x(0.999 * after)) >= level) && after > 0.01) after *= 0.999;
-  before = 0.999 * after;
+  double before = 0.999 * after;
   for (int i = 0; i < 100; ++i)
     (std::abs(x((before + after) / 2)) < level ? after : before) = (before + after) / 2;
   return after;
 }
 
 TEST_CASE("of a motion that creeps the time to an amplitude is the last at which x is as large") {
-  Scene scene = viscous_decay(0);
-  scene.x0 = 3;
-  scene.until_amplitude.reset();
-  scene.until_time = 200;
-  scene.damper().mass_ratio = 1e-9;
-  for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})})
+  Scene scene{.x0 = 3, .until_time = 200, .dampers = {{.mass_ratio = 1e-9}}};
+  for (const Engine& engine : both)
     for (const double zeta : {0.7, 0.9, 0.99, 1.0, 1.1, 2.0}) {
       CAPTURE(zeta);
       scene.damping_ratio = zeta;
@@ -122,22 +107,15 @@ TEST_CASE("of a motion that creeps the time to an amplitude is the last at which
 }
 
 TEST_CASE("with impacts a motion that creeps stays below the amplitude from that time on") {
-  Scene scene;
-  scene.x0 = 3;
-  scene.damper().mass_ratio = 0.1;
-  scene.until_time = 40;
-  Scene of_two = scene;
-  of_two.dampers = {{}, {}};
-  of_two.dampers[0].mass_ratio = 0.05;
-  of_two.dampers[1].clearance = 0.7;
+  Scene scene{.x0 = 3, .until_time = 40, .dampers = {{.mass_ratio = 0.1}}}, of_two = scene;
+  of_two.dampers = {{.mass_ratio = 0.05}, {.clearance = 0.7}};
   for (Scene* const each : {&scene, &of_two})
     for (const double zeta : {0.8, 1.0, 1.5}) {
       each->damping_ratio = zeta;
       const double time = only(kept(*each, {"time_to_amplitude=0.3"}));
-      Record record;
-      record.half_cycles = false;
-      record.history = {{0, time, 2}, {time, 40, 40'001}};
-      const History history = *simulate(*each, Exact{}, record).history;
+      const History history =
+          *simulate(*each, Exact{}, {.half_cycles = false, .history = {{0, time, 2}, {time, 40, 40'001}}})
+               .history;
       CAPTURE(zeta);
       CHECK(std::abs(history.x[1]) == doctest::Approx(0.3).epsilon(1e-12));
       double largest = 0;  // after that time, which is in both windows
@@ -155,14 +133,14 @@ TEST_CASE("with impacts a motion that creeps stays below the amplitude from that
 
 TEST_CASE("what is not reached is absent") {
   const KeptNumbers numbers =
-      kept(paper_decay(), {"time_to_amplitude=0.01", "loss_factor_at=0.01", "loss_factor_at=7",
-                           "lowest_amplitude_above_loss=1", "highest_amplitude_above_loss=1"});
+      kept(paper_decay, {"time_to_amplitude=0.01", "loss_factor_at=0.01", "loss_factor_at=7",
+                         "lowest_amplitude_above_loss=1", "highest_amplitude_above_loss=1"});
   for (const auto& number : numbers.numbers) CHECK_FALSE(number);
   CHECK(numbers.end == "done");
 }
 
 TEST_CASE("with one impact in each half cycle the loss factor is that of the closed form") {
-  const Scene scene = paper_decay();
+  const Scene& scene = paper_decay;
   for (const double amplitude : {0.15, 0.2, 0.25}) {
     const double loss =
         scene.damper().mass_ratio * single_impact(scene.damper().restitution, amplitude)->loss;
@@ -182,8 +160,8 @@ TEST_CASE("with one impact in each half cycle the loss factor is that of the clo
 }
 
 TEST_CASE("between two peaks the loss factor lies on the straight line through theirs") {
-  const Scene scene = paper_decay();
-  const LossFactor loss = loss_before_failure(simulate(scene, Exact{}, Record{}));
+  const Scene& scene = paper_decay;
+  const LossFactor loss = loss_before_failure(simulate(scene, Exact{}, {}));
   std::size_t i = 1;
   while (!(loss.amplitude[i] < 0.2)) ++i;
   REQUIRE(loss.amplitude[i - 1] >= 0.2);
@@ -197,10 +175,9 @@ TEST_CASE("between two peaks the loss factor lies on the straight line through t
 }
 
 TEST_CASE("the share of impacts is what viscous damping leaves") {
-  Scene scene = paper_decay();
+  Scene scene = paper_decay;
   scene.damping_ratio = 0.004;
-  Record record;
-  const Run run = simulate(scene, Exact{}, record);
+  const Run run = simulate(scene, Exact{}, {});
   // A half cycle of amplitude A loses zeta pi A^2 by viscous damping; all that was there at first is lost.
   double viscous = 0;
   for (const double amplitude : run.half_cycles->amplitude)
@@ -211,10 +188,8 @@ TEST_CASE("the share of impacts is what viscous damping leaves") {
 }
 
 TEST_CASE("impacts, their speed and the wall's force are those of the recorded run") {
-  const Scene scene = paper_decay();
-  Record record;
-  record.impacts = true;
-  const Run run = simulate(scene, Exact{}, record);
+  const Scene& scene = paper_decay;
+  const Run run = simulate(scene, Exact{}, {.impacts = true});
   double speed = 0;
   for (const double velocity : run.impacts->relative_velocity) speed = std::max(speed, std::abs(velocity));
   CHECK(only(kept(scene, {"impacts"})) == double(run.impacts->time.size()));
@@ -222,11 +197,7 @@ TEST_CASE("impacts, their speed and the wall's force are those of the recorded r
   CHECK(only(kept(scene, {"largest_wall_force"})) ==
         short_contact(scene.damper(), Calibration::fixed_wall, speed).force);
   // The release alone: the secondary mass presses the wall together by 0.01 and never comes back as fast.
-  Scene pressed = scene;
-  pressed.x0 = 0.01;
-  pressed.damper().y0 = -0.01;
-  pressed.until_amplitude.reset();
-  pressed.until_time = 0.01;
+  const Scene pressed{.x0 = 0.01, .until_time = 0.01, .dampers = {{.y0 = -0.01}}};
   CHECK(only(kept(pressed, {"largest_wall_force"})) == doctest::Approx(1e4 * 0.01));
   CHECK_FALSE(kept(scene, {"largest_wall_force"}, Restitution{}).numbers[0]);
   Scene soft = scene;
@@ -235,12 +206,11 @@ TEST_CASE("impacts, their speed and the wall's force are those of the recorded r
 }
 
 TEST_CASE("steady motions of a light secondary mass are those of the oscillator alone") {
-  Scene scene;
-  scene.damper().mass_ratio = 1e-8;
-  scene.damping_ratio = 0.05;
-  scene.force_amplitude = 0.3;
-  scene.force_frequency = 0.8;
-  scene.until_time = 1;
+  const Scene scene{.damping_ratio = 0.05,
+                    .force_amplitude = 0.3,
+                    .force_frequency = 0.8,
+                    .until_time = 1,
+                    .dampers = {{.mass_ratio = 1e-8}}};
   ForcedRules rules;
   rules.frequencies = FrequencyRange{0.9, 1.1, 201};
   rules.steady.max_periods = 200;
@@ -257,14 +227,12 @@ TEST_CASE("steady motions of a light secondary mass are those of the oscillator 
 
 TEST_CASE(
     "a periodic motion has its period, and its impacts in it; exponents are those of lyapunov_exponents") {
-  Scene scene;
-  scene.damper().mass_ratio = 0.1;
-  scene.damping_ratio = 0.1;
-  scene.force_amplitude = 0.01;
-  scene.force_frequency = 0.5;
-  scene.x0 = 0;
-  scene.damper().y0 = 0.5;
-  scene.until_time = 1;
+  const Scene scene{.damping_ratio = 0.1,
+                    .x0 = 0,
+                    .force_amplitude = 0.01,
+                    .force_frequency = 0.5,
+                    .until_time = 1,
+                    .dampers = {{.mass_ratio = 0.1, .y0 = 0.5}}};
   ForcedRules rules;
   rules.lyapunov_periods = 20;
   rules.lyapunov_discard = 3;
@@ -279,22 +247,20 @@ TEST_CASE(
   CHECK(*numbers.numbers[3] == doctest::Approx(10 * linear_response(0.01, 1, 0.1, 0.5)).epsilon(1e-6));
 
   Scene list = scene;
-  list.dampers = {{}, {}};
   list.force_amplitude = 0.2;
-  list.dampers[1].clearance = 0.7;
+  list.dampers = {{}, {.clearance = 0.7}};
   CHECK(*kept(list, {"lyapunov_exponent"}, Exact{}, scales, rules).numbers[0] ==
         doctest::Approx(lyapunov_exponents(list, Exact{}, 20, 3).exponents[0] / 0.2).epsilon(1e-12));
 }
 
 TEST_CASE("a motion that still grows has no steady amplitude, alone or among others, and says so") {
-  Scene
-      scene;  // at resonance, with next to no secondary mass: after 20 periods at an eighth of its amplitude
-  scene.damper().mass_ratio = 1e-6;
-  scene.damping_ratio = 0.001;
-  scene.force_amplitude = 0.01;
-  scene.force_frequency = 1;
-  scene.x0 = 0;
-  scene.until_time = 1;
+  // At resonance, with next to no secondary mass: after 20 periods at an eighth of its amplitude.
+  const Scene scene{.damping_ratio = 0.001,
+                    .x0 = 0,
+                    .force_amplitude = 0.01,
+                    .force_frequency = 1,
+                    .until_time = 1,
+                    .dampers = {{.mass_ratio = 1e-6}}};
   ForcedRules rules;
   rules.steady.max_periods = 20;
   rules.steady.mean_periods = 10;
@@ -311,8 +277,7 @@ TEST_CASE("a motion that still grows has no steady amplitude, alone or among oth
 }
 
 TEST_CASE("of several dampers the largest wall force is that of the one that has it") {
-  Scene scene;
-  scene.until_time = 5;
+  const Scene scene{.until_time = 5};
   Scene list = scene;
   list.dampers = {{}};
   const std::vector<std::string> names{"impacts", "largest_impact_speed", "largest_wall_force"};
@@ -332,11 +297,8 @@ TEST_CASE("of several dampers the largest wall force is that of the one that has
 }
 
 TEST_CASE("without losses there is no loss factor") {
-  Scene scene;
-  scene.damper().restitution = 1;
-  scene.until_time = 100;
-  for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})})
-    CHECK_FALSE(kept(scene, {"largest_loss_factor"}, engine).numbers[0]);
+  Scene scene{.until_time = 100, .dampers = {{.restitution = 1}}};
+  for (const Engine& engine : both) CHECK_FALSE(kept(scene, {"largest_loss_factor"}, engine).numbers[0]);
   Scene list = scene;
   list.dampers.assign(2, {.mass_ratio = 0.01, .restitution = 1});
   CHECK_FALSE(kept(list, {"largest_loss_factor"}).numbers[0]);
@@ -345,12 +307,12 @@ TEST_CASE("without losses there is no loss factor") {
 }
 
 TEST_CASE("in units, numbers are asked for and given in seconds, millimetres, newtons") {
-  const Scene scene = paper_decay();
+  const Scene& scene = paper_decay;
   const Scales scales{40, 16000, 10};  // 0.05 s, 10 mm, 160 N
-  const std::vector<std::string> names{"time_to_amplitude=6", "largest_impact_speed", "largest_wall_force",
-                                       "highest_amplitude_above_loss=0.05", "impacts"};
-  const std::vector<std::string> plain{"time_to_amplitude=0.6", "largest_impact_speed", "largest_wall_force",
-                                       "highest_amplitude_above_loss=0.05", "impacts"};
+  std::vector<std::string> names{"time_to_amplitude=6", "largest_impact_speed", "largest_wall_force",
+                                 "highest_amplitude_above_loss=0.05", "impacts"},
+      plain = names;
+  plain[0] = "time_to_amplitude=0.6";
   const KeptNumbers in_units = kept(scene, names, Exact{}, scales), without = kept(scene, plain);
   const double units[] = {0.05, 200, 160, 10, 1};
   for (std::size_t i = 0; i < names.size(); ++i)
@@ -358,14 +320,13 @@ TEST_CASE("in units, numbers are asked for and given in seconds, millimetres, ne
 }
 
 TEST_CASE("a run that ends early or fails says so") {
-  Exact few;
-  few.budget.max_impacts = 10;
-  const KeptNumbers early = kept(paper_decay(), {"impacts", "time_to_amplitude=0.1"}, few);
+  const KeptNumbers early =
+      kept(paper_decay, {"impacts", "time_to_amplitude=0.1"}, Exact{.budget = {.max_impacts = 10}});
   CHECK(early.end == "impact_budget");
   CHECK(*early.numbers[0] == 1);  // of the first half cycle; nine more are in the second, which is cut
   CHECK_FALSE(early.numbers[1]);
 
-  const KeptNumbers unforced = kept(paper_decay(), {"impacts", "steady_amplitude"});
+  const KeptNumbers unforced = kept(paper_decay, {"impacts", "steady_amplitude"});
   CHECK(unforced.end == "not_valid");
   CHECK(unforced.problem == "force_amplitude: must not be 0: without a force there is no steady motion");
   CHECK_FALSE(unforced.numbers[1]);

@@ -51,12 +51,9 @@ DesignQuestion mast() {
 
 // The first peak below the amplitude, in seconds, found among samples of x of the motion.
 double sampled_time(const Scene& scene, const Scales& scales, double amplitude) {
-  Record record;
-  record.half_cycles = true;
   Scene longer = scene;
   longer.until_amplitude.reset();
-  record.history = {{0, *scene.until_time, 200'001}};
-  const Run run = simulate(longer, Exact{}, record);
+  const Run run = simulate(longer, Exact{}, {.history = {{0, *scene.until_time, 200'001}}});
   const std::vector<double>& x = run.history->x;
   double peak = std::abs(x[0]), at = 0;
   for (std::size_t i = 1; i < x.size(); ++i) {
@@ -179,15 +176,12 @@ TEST_CASE("masses are looked for between round numbers") {
 }
 
 TEST_CASE("a scene with unit scales is the dimensionless scene") {
-  Scene scene;
-  scene.damper().mass_ratio = 0.037;
-  scene.damper().restitution = 0.45;
-  scene.damping_ratio = 0.01;
-  scene.damper().wall_stiffness = 12345;
-  scene.x0 = 5.7;
-  scene.v0 = -0.3;
-  scene.damper().w0 = 0.7;
-  scene.until_time = 1;
+  const Scene scene{
+      .damping_ratio = 0.01,
+      .x0 = 5.7,
+      .v0 = -0.3,
+      .until_time = 1,
+      .dampers = {{.mass_ratio = 0.037, .restitution = 0.45, .wall_stiffness = 12345, .w0 = 0.7}}};
   SceneInUnits units = with_unit_scales(scene);
   units.until_seconds = 1;
   CHECK(dimensionless(units) == scene);
@@ -347,24 +341,18 @@ TEST_CASE("what is wrong with a question is told") {
   };
   using Names = std::set<std::string>;
   CHECK(fields(mast()).empty());
-  DesignQuestion question = mast();
-  question.amplitude = 60;
-  question.time = NAN;
-  question.share = 1;
-  CHECK(fields(question) == Names{"amplitude", "time", "share"});
-  question = mast();
-  question.scene.exciting_force = 1;
-  CHECK(fields(question) == Names{"scene"});
-  question = mast();
-  question.tolerances[0].width = 0.5;
-  CHECK(fields(question) == Names{"tolerance"});
-  question.tolerances[0] = question.tolerances[1];
-  CHECK(fields(question) == Names{"tolerance"});
-  question = mast();
-  question.clearance = {50, 25};
-  CHECK(fields(question) == Names{"clearance"});
-  question = mast();
-  question.neighbours = 0;
-  CHECK(fields(question) == Names{"neighbours"});
-  CHECK_THROWS_AS(find_designs(question, 1, ignore), InvalidArguments);
+  const auto wrong = [](const auto& change) {
+    DesignQuestion question = mast();
+    change(question);
+    return question;
+  };
+  const auto no_neighbours = wrong([](DesignQuestion& q) { q.neighbours = 0; });
+  CHECK(fields(wrong([](auto& q) { q.amplitude = 60, q.time = NAN, q.share = 1; })) ==
+        Names{"amplitude", "time", "share"});
+  CHECK(fields(wrong([](auto& q) { q.scene.exciting_force = 1; })) == Names{"scene"});
+  CHECK(fields(wrong([](auto& q) { q.tolerances[0].width = 0.5; })) == Names{"tolerance"});
+  CHECK(fields(wrong([](auto& q) { q.tolerances[0] = q.tolerances[1]; })) == Names{"tolerance"});
+  CHECK(fields(wrong([](auto& q) { q.clearance = {50, 25}; })) == Names{"clearance"});
+  CHECK(fields(no_neighbours) == Names{"neighbours"});
+  CHECK_THROWS_AS(find_designs(no_neighbours, 1, ignore), InvalidArguments);
 }

@@ -34,13 +34,11 @@ struct Folder {
 
 // 150 runs: more than two digests' worth.
 ShareHead head_of(std::int64_t part = 1, std::int64_t parts = 1) {
-  ShareHead head;
-  head.plan = parse_plan("plan.json", R"({"schema": "impact-damper/plan/1", "quantities": ["impacts"],
-      "scene": {"until_time": 1}, "grid": [{"number": "x0", "from": 1, "to": 2, "count": 150}]})");
-  head.part = part;
-  head.parts = parts;
-  head.program = "0.1.0 abc";
-  return head;
+  return {.plan = parse_plan("plan.json", R"({"schema": "impact-damper/plan/1", "quantities": ["impacts"],
+      "scene": {"until_time": 1}, "grid": [{"number": "x0", "from": 1, "to": 2, "count": 150}]})"),
+          .part = part,
+          .parts = parts,
+          .program = "0.1.0 abc"};
 }
 
 // Rows as a sweep would have them, but for their numbers.
@@ -129,17 +127,11 @@ TEST_CASE("a share of another plan, part or program is not gone on with") {
   const Folder folder;
   const fs::path file = made(folder.path / "t.csv", 1, 1);
   const std::string whole = read_text(file);
-  ShareHead other = head_of();
-  other.program = "0.1.0 abd";
-  CHECK_THROWS_AS(ShareWriter(file, other), InputError);
-  other = head_of(1, 2);
-  CHECK_THROWS_AS(ShareWriter(file, other), InputError);
-  other = head_of();
-  other.plan.grid[0].to = 2.5;
-  CHECK_THROWS_AS(ShareWriter(file, other), InputError);
-  other = head_of();
-  other.plan.forced.steady.tolerance = 1e-9;
-  CHECK_THROWS_AS(ShareWriter(file, other), InputError);
+  std::vector<ShareHead> others{head_of(), head_of(1, 2), head_of(), head_of()};
+  others[0].program = "0.1.0 abd";
+  others[2].plan.grid[0].to = 2.5;
+  others[3].plan.forced.steady.tolerance = 1e-9;
+  for (const ShareHead& other : others) CHECK_THROWS_AS(ShareWriter(file, other), InputError);
   CHECK(read_text(file) == whole);
 }
 
@@ -232,30 +224,25 @@ TEST_CASE("parts that are missing, doubled, unfinished or of something else are 
     put(b, text);
     return problem_of_join({a, b, c}, table);
   };
-  std::string other = whole;
-  other.replace(other.find("0.1.0 abc"), 9, "0.1.1 abc");
-  CHECK(with_b(with_digests(other)).starts_with(b.string() + ": must be of the same plan and program"));
-  other = whole;
-  other.replace(other.find("\"to\": 2"), 7, "\"to\": 3");
-  CHECK(with_b(with_digests(other)).starts_with(b.string() + ": must be of the same plan and program"));
+  const auto replaced = [&](const std::string& from, const std::string& to) {
+    std::string other = whole;
+    return other.replace(other.find(from), from.size(), to);
+  };
+  for (const std::string& other : {replaced("0.1.0 abc", "0.1.1 abc"), replaced("\"to\": 2", "\"to\": 3")})
+    CHECK(with_b(with_digests(other)).starts_with(b.string() + ": must be of the same plan and program"));
   // A row that is doubled, missing or altered, by an accident that does not know of digests, and by one that
   // does.
   const std::size_t row = whole.find("\n57,") + 1, end = whole.find('\n', row) + 1;
+  const std::string doubled = whole.substr(0, end) + whole.substr(row),
+                    missing = whole.substr(0, row) + whole.substr(end);
+  std::string altered = whole;
+  altered[end - 3] = 'x';
   for (const std::string& text :
-       {whole.substr(0, end) + whole.substr(row), whole.substr(0, row) + whole.substr(end)}) {
+       {doubled, missing, with_digests(doubled), with_digests(missing),
+        with_digests(replaced("\n57,", "\n56,")),  // one doubled for one that is missing
+        altered, whole.substr(0, whole.size() - 1), whole + "107,1,2,done,\n",
+        whole.substr(0, whole.rfind("\n# ") + 1)})
     CHECK(with_b(text).starts_with(b.string() + ": line "));
-    CHECK(with_b(with_digests(text)).starts_with(b.string() + ": line "));
-  }
-  other = whole;
-  other.replace(row, 3, "56,");  // one doubled for one that is missing
-  CHECK(with_b(with_digests(other)).starts_with(b.string() + ": line "));
-  other = whole;
-  other[end - 3] = 'x';
-  CHECK(with_b(other).starts_with(b.string() + ": line "));
-  CHECK(with_b(whole.substr(0, whole.size() - 1)).starts_with(b.string() + ": line "));
-  CHECK(with_b(whole + "107,1,2,done,\n").starts_with(b.string() + ": line "));
-  const std::size_t last = whole.rfind("\n# ") + 1;
-  CHECK(with_b(whole.substr(0, last)).starts_with(b.string() + ": line "));
   put(b, whole.substr(0, whole.find("\n50,") + 1));
   CHECK(problem_of_join({a, b, c}, table)
             .starts_with(b.string() + ": must hold 50 runs, got 0: it is not finished"));
