@@ -1,13 +1,11 @@
 """The table of design charts holds the means that Python's csv module finds in its sweep, of the catalogue's plan and no other.
-
-    design_charts.py PROGRAM SOURCE FOLDER        FOLDER, made anew, is for the files
 """
 import csv
 import json
 import math
 import statistics
 
-from trial import call, demand, finish, folder, read, source, write
+from trial import call, demand, finish, folder, source, write
 
 (folder / "runs").mkdir()
 
@@ -17,8 +15,8 @@ plan = json.loads((source / "figures/design_charts.json").read_text(encoding="ut
 plan["grid"] = [{"number": "restitution", "values": [0.4, 0.6]}, {"number": "mass_ratio", "values": [0.02, 0.1]}]
 plan["samples"]["count"] = 3
 write("charts.json", plan)
-(folder / "catalogue.json").write_text(json.dumps({"schema": "impact-damper/catalogue/1", "scenes": [], "figures": [
-    {"figure": "H", "title": "Charts", "table": "design_charts", "plan": "charts.json", "script": "figH.gp"}]}), encoding="utf-8")
+write("catalogue.json", {"schema": "impact-damper/catalogue/1", "scenes": [], "figures": [
+    {"figure": "H", "title": "Charts", "table": "design_charts", "plan": "charts.json", "script": "figH.gp"}]})
 series = ("series", "--catalogue", "catalogue.json", "--runs", "runs", "--scenes", ".", "--figure", "H", "--format", "csv")
 demand("runs/charts.csv.json: cannot be read" in call(*series, code=5), "no sweep, and no word of it")
 call("sweep", "charts.json", "-o", "runs/charts.csv")

@@ -2,7 +2,7 @@
 files of this folder, the project's own, a fresh run of each engine, and whatever becomes of the allowed ones of this folder
 if one value after the other is changed, left out or doubled.
 
-    agree.py PROGRAM SOURCE FOLDER [NTH]      FOLDER is for the changed files; about every NTH is tried, drawn with a fixed seed
+    agree.py PROGRAM FOLDER [NTH]      about every NTH changed file is tried, drawn with a fixed seed
 
 The schemas take nearly all the time, in Python; so a document is kept small, and all processors have their share.
 """
@@ -10,24 +10,16 @@ import json
 import math
 import multiprocessing
 import os
-import pathlib
 import random
 import re
 import shutil
-import subprocess
 import sys
 
-try:
-    from jsonschema import Draft7Validator, RefResolver
-except ImportError:
-    print("skipped: Python's jsonschema is not here (Debian: python3-jsonschema)")
-    sys.exit(77)
+import trial
+from packed_files import unpack
+from trial import call, demand, faults, finish, folder, run, source, validator
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from packed_files import unpack  # noqa: E402
-
-program, source, folder = sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
-nth = int(sys.argv[4]) if len(sys.argv) > 4 else 1
+nth = int(trial.words[0]) if trial.words else 1
 KINDS = ("scene", "run", "plan", "catalogue", "claims", "manifest")
 
 # What the program says, as a regular expression, of files that a schema cannot reject: why it cannot.
@@ -80,13 +72,6 @@ BEYOND_SCHEMAS = {
 }
 
 
-def validator(kind):
-    path = source / "data/schema" / f"{kind}.schema.json"
-    schema = json.loads(path.read_text(encoding="utf-8"))
-    Draft7Validator.check_schema(schema)
-    return Draft7Validator(schema, resolver=RefResolver(path.as_uri(), schema))
-
-
 VALIDATORS = {kind: validator(kind) for kind in KINDS}
 
 
@@ -108,9 +93,8 @@ def complaints(kind, files):
     said = {str(file): [] for file in files}
     names = list(said)
     for first in range(0, len(names), 1000):
-        done = subprocess.run([program, "check", kind, *names[first : first + 1000]], capture_output=True, text=True)
-        if done.returncode not in (0, 3):
-            sys.exit(f"check {kind}: exit code {done.returncode}: {done.stderr}")
+        done = run(trial.program, "check", kind, *names[first : first + 1000], code=None)
+        demand(done.returncode in (0, 3), f"check {kind}: exit code {done.returncode}: {done.stderr}")
         for line in done.stderr.splitlines():
             if ": warning: " in line:
                 continue
@@ -194,10 +178,7 @@ def documents(file):
 
 
 def main():
-    if folder.exists():
-        shutil.rmtree(folder)
-    (folder / "fresh").mkdir(parents=True)
-
+    (folder / "fresh").mkdir()
     corpus = {}  # of each file what the program says of it; of an allowed one nothing
     for kind in KINDS:
         notes = unpack(source / f"tests/corpus/{kind}.packed", folder / "corpus" / kind)
@@ -211,12 +192,12 @@ def main():
            "manifest": [file for file in [source / "data/reference/manifest.json"] if file.exists()]}
     for engine in ("exact", "restitution", "cem"):
         fresh = folder / "fresh" / f"{engine}.json"
-        subprocess.run([program, "run", "--until-time", "20", "--engine", engine, "--force-amplitude", "0.1", "--record",
-                        "half_cycles,impacts,contacts,energy,history", "--history", "0:20:11", "-o", fresh], check=True)
+        call("run", "--until-time", "20", "--engine", engine, "--force-amplitude", "0.1", "--record",
+             "half_cycles,impacts,contacts,energy,history", "--history", "0:20:11", "-o", fresh)
         own["run"].append(fresh)
     several = folder / "fresh" / "several.json"
-    subprocess.run([program, "run", "--scene", folder / "corpus/scene/dampers_every_key.json", "--engine", "restitution", "--record",
-                    "half_cycles,impacts,contacts,energy,history", "--history", "0:5:11", "-o", several], check=True)
+    call("run", "--scene", folder / "corpus/scene/dampers_every_key.json", "--engine", "restitution", "--record",
+         "half_cycles,impacts,contacts,energy,history", "--history", "0:5:11", "-o", several)
     own["run"].append(several)
 
     changed = 0
@@ -235,7 +216,7 @@ def main():
     print(f"{len(corpus)} files of the corpus, {changed} changed ones", flush=True)
 
     beyond = [re.compile(each) for each in BEYOND_SCHEMAS]
-    faults, exceptions = [], 0
+    exceptions = 0
     pairs = [(kind, file) for kind in KINDS for file in files[kind] + own[kind]]
     with multiprocessing.Pool(os.cpu_count()) as processes:
         allowed = dict(zip(pairs, processes.starmap(schema_allows, pairs, chunksize=100)))
@@ -244,7 +225,7 @@ def main():
         for file in own[kind]:
             if not allowed[kind, file]:
                 faults.append(f"{file}: rejected by the {kind} schema")
-            faults += [f"rejected: {line}" for line in said[str(file)]]
+            faults.extend(f"rejected: {line}" for line in said[str(file)])
         for file in files[kind]:
             lines = said[str(file)]
             beyond_schemas = all(any(each.search(line) for each in beyond) for line in lines)
@@ -252,12 +233,10 @@ def main():
             if allowed[kind, file] != beyond_schemas:
                 verdict = "allows" if allowed[kind, file] else "rejects"
                 faults.append(f"the {kind} schema {verdict} {file}, of which the program says: {lines}")
-    print(f"{exceptions} rejected for what no schema can express, {len(faults)} faults")
-    for fault in faults[:20]:
-        print(fault[:600])
+    del faults[20:]
     if not faults:
         shutil.rmtree(folder)
-    sys.exit(bool(faults))
+    finish(f"{exceptions} rejected for what no schema can express, ")
 
 
 main()

@@ -11,12 +11,9 @@ import shutil
 import signal
 import subprocess
 import sys
-from pathlib import Path
 
 import scratch
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from packed_files import read  # noqa: E402
+from packed_files import read
 
 FULL, READ_ONLY, DENIED = "No space left on device", "Read-only file system", "Permission denied"
 
