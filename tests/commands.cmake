@@ -172,7 +172,7 @@ python_test("report: a page in units, one of a forced scene and one of several d
             pipeline own_report/scenes.py ${program} ${made}/own_report/two_scenes "slip of the units" "two motions" "several")
 python_test("report: without gnuplot, interrupted, or moved away" pipeline own_report/hindered.py ${program}
             ${made}/own_report/hindered)
-python_test("report: its pages in a browser" paper LONG own_report/browser.py ${made}/own_report/scenes
+python_test("report: its pages in a browser" paper LONG paper/browser.py ReportsAboutScenes ${made}/own_report/scenes
             PROPERTIES FIXTURES_REQUIRED own_pages)
 
 # A small catalogue from its scene to its figures, and what happens when something between is broken.
@@ -219,7 +219,7 @@ refreshed_test("citing: what describes the project for programs is up to date" $
 python_test("citing: CITATION.cff, codecheck.yml and the RO-Crate keep to their formats" regression citing/formats.py ${new}
             PROPERTIES FIXTURES_REQUIRED refreshed)
 python_test("citing: every stamp leads from its picture to its data, and back to the picture" regression citing/leads_back.py
-            --program ${program} --new ${new} --folder ${made}/citing/tree PROPERTIES FIXTURES_REQUIRED refreshed)
+            ${program} ${made}/citing/tree ${new} PROPERTIES FIXTURES_REQUIRED refreshed)
 python_test("citing: an archive has the same bytes twice, what the manifest lists, and its commit" regression LONG
             citing/archive.py ${new} ${made}/citing/archive PROPERTIES FIXTURES_REQUIRED refreshed)
 
@@ -227,8 +227,8 @@ python_test("citing: an archive has the same bytes twice, what the manifest list
 python_test("paper: the numbers of the report follow the results, none is typed" paper LONG paper/report.py ${PROJECT_BINARY_DIR}
             ${new}/data/reference/verdicts.json ${made}/paper
             PROPERTIES FIXTURES_REQUIRED "exact_figures;refreshed" FIXTURES_SETUP report)
-python_test("paper: the report in a browser" paper LONG paper/browser.py ${made}/paper/as-it-is/report.html
-            ${PROJECT_BINARY_DIR}/series/exact ${made}/paper/screenshots PROPERTIES FIXTURES_REQUIRED report COST 25)
+python_test("paper: the report in a browser" paper LONG paper/browser.py Report
+            ${made}/paper/as-it-is/report.html ${PROJECT_BINARY_DIR}/series/exact ${made}/paper/screenshots PROPERTIES FIXTURES_REQUIRED report COST 25)
 
 # verify must notice a wrong model.
 command_test("verify: three planted faults are noticed" regression LONG
@@ -238,7 +238,8 @@ command_test("verify: three planted faults are noticed" regression LONG
 # The first minutes: what `make deps` and `make install` do, docs/adding.md tried with the installed program, and
 # examples/ with the installed library.
 set(root ${made}/installed/root)
-python_test("installed: .ci/install waits for another apt" cli installed/waits.py ${source} ${made}/installed/waits)
+set(installed ${root}/opt/it/bin/impact-damper)
+python_test("installed: .ci/install waits for another apt" cli installed/waits.py ${source}/.ci/install ${made}/installed/waits)
 command_test("installed: configuring says nothing of the bench to who has not asked for it" cli LONG
              COMMAND sh -c [[said=$(cmake -S "$0" -B "$1" -G Ninja 2>&1) && said=$said$(cmake "$1" -DBUILD_TESTING=ON 2>&1) &&
                              echo "$said" && ! echo "$said" | grep -iE "bench:|odeint|sundials|siconos|float128"]]
@@ -248,14 +249,14 @@ command_test("installed: program, data, man page and completions are put under D
                      ${PROJECT_BINARY_DIR} ${root}
              PROPERTIES FIXTURES_SETUP installed RUN_SERIAL ON)
 python_test("installed: the program finds its files from any folder, and pages and shells know every option" cli
-            installed/installed.py ${root}/opt/it ${program} ${source} ${exact_runs} ${made}/installed/elsewhere
+            installed/installed.py ${installed} ${made}/installed/elsewhere ${program} ${exact_runs}
             PROPERTIES FIXTURES_REQUIRED "installed;exact_figures")
-python_test("installed: docs/adding.md works as it says, outside the tree" cli installed/adding.py ${root}/opt/it ${source}
+python_test("installed: docs/adding.md works as it says, outside the tree" cli installed/adding.py ${installed}
             ${made}/installed/adding PROPERTIES FIXTURES_REQUIRED installed)
 # With other sanitizers than the library's, or none, a stranger's program does not link.
 if(NOT CMAKE_CXX_FLAGS MATCHES "sanitize=")
   python_test("installed: a stranger's project finds the library and gets the program's bytes" cli LONG installed/library.py
-              ${root}/opt/it ${source} ${made}/installed/library ${CMAKE_CXX_COMPILER}
+              ${installed} ${made}/installed/library ${CMAKE_CXX_COMPILER}
               PROPERTIES FIXTURES_REQUIRED installed COST 40)
 endif()
 
@@ -265,8 +266,8 @@ if(TARGET impact_damper_python)
                COMMAND ${MODULE_PYTHON} -B ${tests}/python/test_module.py ${program} $<TARGET_FILE:impact_damper_python>
                        ${source} ${made}/python)
   command_test("python: the module is installed where this Python looks, and elsewhere it is said how to have it found" unit
-               COMMAND ${MODULE_PYTHON} -B ${tests}/python/installed.py ${PROJECT_BINARY_DIR} ${PROJECT_VERSION}
-                       ${made}/python/installed)
+               COMMAND ${MODULE_PYTHON} -B ${tests}/python/installed.py ${PROJECT_BINARY_DIR}
+                       ${made}/python/installed ${PROJECT_VERSION} PROPERTIES ENVIRONMENT PYTHONPATH=${tests})
 endif()
 
 # What is ended, or hindered, from outside (nothing_lost/scratch.py): nothing is lost, nothing is half done. The longest form

@@ -98,7 +98,7 @@ def kill_once(victim, hold, aimed, random_moments, check, tally):
             alive = victim.process.poll() is None
     if alive:
         os.killpg(victim.process.pid, signal.SIGKILL)
-    scratch.kill_all_below_me()
+    scratch.end_all()
     victim.process.stderr.close()
     left = scratch.unfinished_in(victim.folder)
     tally["alive"] += alive
@@ -134,7 +134,7 @@ def kill_make(tree, wanted, random_moments, check, tally, duration):
         os.killpg(make.pid, signal.SIGKILL)
         make.wait()
     if whom == "all":
-        scratch.kill_all_below_me()
+        scratch.end_all()
     tally["unfinished"] += bool(scratch.unfinished_in(tree))
     for file, content in scratch.made_in(tree).items():
         check(content == wanted.get(file), f"make figures, {whom} killed: {file} is partial")

@@ -5,16 +5,15 @@ program as it is built, but no sources. What is made there is made by the projec
 """
 
 import argparse
-import ctypes
 import json
 import os
 import re
 import shutil
-import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
+
+from processes import adopt_orphans, descendants, end_all, kill  # noqa: F401, for the tests
 
 SOURCE = Path(__file__).resolve().parents[2]
 
@@ -96,52 +95,6 @@ def unfinished_in(folder):
     """Temporary files and folders of the program and of figures/draw."""
     return sorted(os.path.join(place, name) for place, folders, files in os.walk(folder) for name in folders + files
                   if name.startswith(".") and name.endswith((".tmp", ".draw")))
-
-
-def adopt_orphans():
-    """Children of killed children become ours, so that they can be found."""
-    ctypes.CDLL(None).prctl(36, 1, 0, 0, 0)
-
-
-def descendants(process):
-    children = {}
-    for status in Path("/proc").glob("[0-9]*/stat"):
-        try:
-            text = status.read_text()
-        except OSError:
-            continue
-        fields = text[text.rindex(")") + 2:].split()
-        children.setdefault(int(fields[1]), []).append(int(text.split(" ", 1)[0]))
-    found, left = [], [process]
-    while left:
-        below = children.get(left.pop(), [])
-        found += below
-        left += below
-    return found
-
-
-def kill(processes):
-    for process in processes:
-        try:
-            os.kill(process, signal.SIGKILL)
-        except ProcessLookupError:
-            pass
-
-
-def kill_all_below_me():
-    """Until none is left; a process may have begun another while it was looked for."""
-    while alive := descendants(os.getpid()):
-        kill(alive)
-        reap()
-
-
-def reap():
-    try:
-        while os.waitpid(-1, os.WNOHANG)[0]:
-            pass
-    except ChildProcessError:
-        pass
-    time.sleep(0.001)
 
 
 def complaints(error: str):
