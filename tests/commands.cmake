@@ -157,7 +157,7 @@ python_test("cli: with the name - a command prints what it writes to a file, and
 python_test("cli: a map has the best point, the margin and the cells of its table, as Python's csv reads it" cli cli/map.py
             ${program} ${made}/cli/map PROPERTIES COST 4)
 python_test("cli: the table of design charts has the means of its sweep, and takes no sweep of another plan" cli
-            cli/design_charts.py ${program} ${made}/cli/design_charts)
+            cli/outputs.py ${program} ${made}/cli/design_charts design_charts)
 python_test("cli: what design says of a design is what run and sweep say of it, with any number of threads" cli cli/designs.py
             ${program} ${made}/cli/designs PROPERTIES COST 5)
 python_test("cli: sweeps have the same bytes however they are made, hold the numbers of runs, and are not mixed" cli
@@ -277,8 +277,8 @@ target_link_libraries(hold PRIVATE impact_damper_options ${CMAKE_DL_LIBS})
 # outside_test(NAME COST SCRIPT ARGUMENT...)
 function(outside_test name cost script)
   string(MAKE_C_IDENTIFIER "${name}" folder)
-  python_test("nothing lost: ${name}" nothing_lost LONG nothing_lost/${script} --program ${program}
-              --folder ${made}/nothing_lost/${folder} ${ARGN} PROPERTIES COST ${cost})
+  python_test("nothing lost: ${name}" nothing_lost LONG nothing_lost/${script} ${program}
+              ${made}/nothing_lost/${folder} ${ARGN} PROPERTIES COST ${cost})
 endfunction()
 outside_test("killed at random moments" 20 killed.py --hold $<TARGET_FILE:hold> --kills 30 --figures 7 10 13)
 outside_test("interrupted, and made twice at once" 15 interrupted.py)
@@ -288,8 +288,8 @@ outside_test("beyond all bounds" 25 bounds.py --scenes 6)
 # The checks themselves, against a program that writes directly to the final name, and takes its time.
 outside_test("a program that writes half files is found out" 130 planted.py --hold $<TARGET_FILE:hold>)
 add_custom_target(kills
-  COMMAND ${PYTHON3} ${tests}/nothing_lost/killed.py --program ${program} --hold $<TARGET_FILE:hold>
-          --folder ${made}/nothing_lost/kills --kills 110
+  COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${tests} ${PYTHON3} ${tests}/nothing_lost/killed.py ${program}
+          ${made}/nothing_lost/kills --hold $<TARGET_FILE:hold> --kills 110
   DEPENDS impact-damper hold USES_TERMINAL VERBATIM)
 
 # Six seconds for each reader, two readers at a time.

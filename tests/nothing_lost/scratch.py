@@ -10,10 +10,7 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 from pathlib import Path
-
-from processes import adopt_orphans, descendants, end_all, kill  # noqa: F401, for the tests
 
 SOURCE = Path(__file__).resolve().parents[2]
 
@@ -31,8 +28,8 @@ ENVIRONMENT = {name: value for name, value in os.environ.items()
 
 def arguments(description):
     parser = argparse.ArgumentParser(description=description)
-    parser.add_argument("--program", type=Path, required=True, help="impact-damper as it is built")
-    parser.add_argument("--folder", type=Path, required=True, help="to work in; it is made anew")
+    parser.add_argument("program", help="impact-damper as it is built")
+    parser.add_argument("folder", help="to work in; it is made anew")
     return parser
 
 
@@ -101,24 +98,3 @@ def complaints(error: str):
     """The lines on stderr but for progress, which a program tells where it takes longer than two seconds, and for
     complaints about counts of lines that another interrupt has cut off."""
     return [line for line in error.splitlines() if not line.startswith(("report: ", "verify: ", "profiling: "))]
-
-
-class Check:
-    """Counts what was looked at, and ends the program with what was wrong."""
-
-    def __init__(self):
-        self.count, self.faults = 0, []
-
-    def __call__(self, condition, fault):
-        self.count += 1
-        if not condition:
-            self.faults.append(fault)
-            print("FAULT:", fault, file=sys.stderr)
-        return condition
-
-    def end(self, summary, skipped=()):
-        """Exit code 77, for CTest, where nothing is wrong but not all could be tested here."""
-        for what in skipped:
-            print("SKIPPED:", what)
-        print(f"{summary}: {len(self.faults)} faults")
-        sys.exit(1 if self.faults else 77 if skipped else 0)

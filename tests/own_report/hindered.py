@@ -66,7 +66,7 @@ home = folder / "home"
 home.mkdir()
 (home / ".gnuplot").write_text("set terminal png\nset grid\n")
 demand(report(*SHORT, code=0, HOME=str(home), LC_ALL="de_DE.UTF-8", GNUTERM="png").stdout == plain,
-      "the page depends on the surroundings")
+       "the page depends on the surroundings")
 
 # Moved away from its sources, called from elsewhere by a relative name.
 away = folder / "away"
@@ -99,7 +99,7 @@ for number, code in ((signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP
     demand(process.returncode == code, f"{number.name}: exit code {process.returncode}")
     demand(error == "impact-damper: interrupted: page.html is not written\n", f"{number.name}: says {error!r}")
     demand(list(here.iterdir()) == [] and list(temporary.iterdir()) == [],
-          f"{number.name}: leaves {list(here.iterdir())}, {list(temporary.iterdir())}")
+           f"{number.name}: leaves {list(here.iterdir())}, {list(temporary.iterdir())}")
     child = int(started.read_text())
     demand(not pathlib.Path(f"/proc/{child}").exists(), f"{number.name}: gnuplot goes on")
 

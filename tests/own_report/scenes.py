@@ -253,7 +253,7 @@ def spread(run, options):
 
 def holds(page, section, value, what, digits=1e-9):
     demand(any(near(value, number, digits) for number in page.numbers[section]),
-          f"{name}: {section} does not have the {what}, {value}: {page.numbers[section]}")
+           f"{name}: {section} does not have the {what}, {value}: {page.numbers[section]}")
 
 
 def carried(scene):
@@ -413,7 +413,7 @@ def response(page, text, run, scales):
         last = max(a for t, a in zip(long["peak_time"], long["amplitude"]) if t > (periods - 500) * 2 * math.pi / omega) * length
         repeats = any(near(mark[1] / y_unit, worst, pixel) for way in drawn for mark in drawn[way][False])
         demand(near(last, worst, 0.01 if repeats else 0.2) or ranges_told(words) and last < worst,
-              f"{name}: at the worst frequency a long run has {last}, not {worst}")
+               f"{name}: at the worst frequency a long run has {last}, not {worst}")
     # Where both motions repeat and differ the page says so, and its range reaches there.
     ranges = ranges_told(words)
     differ = [a[0] for a, b in zip(sorted(drawn["rising"][False]), sorted(drawn["falling"][False]))

@@ -261,6 +261,9 @@ class InABrowser(browsers.InABrowser):
           place.querySelector("button").click();""",
                             'output.dataset.state && output.dataset.state !== "working" && output.textContent', seconds)
 
+    def alert(self) -> str:
+        return self.page.does("document.querySelector('[role=alert]').textContent")
+
     def types(self, name: str, value: str, selector: str = ""):
         self.page.does(f"""(() => {{
           const field = document.querySelector("[aria-label^='{name}']{selector}");
@@ -424,9 +427,9 @@ class DamperToPlayWith(InABrowser):
     def test_what_is_not_valid_is_rejected_in_the_programs_words_and_the_decay_stays(self):
         before = self.open()
         self.types("restitution", "1.5")
-        self.assertIn("/restitution: must be", self.page.does("document.querySelector('[role=alert]').textContent"))
+        self.assertIn("/restitution: must be", self.alert())
         self.types("restitution", "0.6")
-        self.assertEqual(self.page.does("document.querySelector('[role=alert]').textContent"), "")
+        self.assertEqual(self.alert(), "")
         self.assertEqual(self.settled(), before)
 
     def test_the_keyboard_moves_through_the_decay(self):
@@ -604,9 +607,6 @@ class OwnDamper(InABrowser):
         own, content = self.page.does(heights)
         self.assertLessEqual(content, own)
         self.assertLess(own, self.page.does(f"{page}.body.getBoundingClientRect().height") + 60)
-
-    def alert(self) -> str:
-        return self.page.does("document.querySelector('[role=alert]').textContent")
 
     def field(self, name: str, what: str):
         return self.page.does(f"document.querySelector('[aria-label^=\"{name}\"]').{what}")
