@@ -94,6 +94,6 @@ def sealed(text):
 
 def finish(summary="", skipped=()):
     """Exit code 77 where nothing is wrong, but not all could be tested here."""
-    print(*(f"FAULT: {str(fault)[:3000]}" for fault in faults), *(f"SKIPPED: {what}" for what in skipped), sep="\n")
-    print(f"{summary}{len(faults)} faults")
+    print(*(f"FAULT: {str(fault)[:3000]}" for fault in faults), *(f"SKIPPED: {what}" for what in skipped), f"{summary}{len(faults)} faults",
+          sep="\n")
     sys.exit(1 if faults else 77 if skipped else 0)
