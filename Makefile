@@ -191,7 +191,7 @@ check-all: check check-long  ## make check, then make check-long: every test, ev
 cluster-check: $(BUILD)/build.ninja  ## sweeps by the scripts of examples/cluster/: GNU parallel, and a real Slurm that is started here (minutes)
 	@$(alone) cmake --build $(BUILD) --target impact-damper || exit; \
 	for check in parallel slurm; do \
-	  tests/cluster/$$check.py $(BUILD)/src/impact-damper . $(BUILD)/cluster-check/$$check || exit; \
+	  PYTHONPATH=tests tests/cluster/$$check.py $(BUILD)/src/impact-damper $(BUILD)/cluster-check/$$check || exit; \
 	done
 
 lint: $(BUILD)/build.ninja  ## clang-tidy and cppcheck over the sources: no finding (minutes)

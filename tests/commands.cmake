@@ -25,7 +25,8 @@ function(command_test name label)
   endif()
 endfunction()
 
-# python_test(NAME LABEL [LONG] SCRIPT WORD... [PROPERTIES NAME VALUE...]): a script of this folder, and its arguments.
+# python_test(NAME LABEL [LONG] SCRIPT WORD... [PROPERTIES NAME VALUE...]): a script of this folder, which finds the modules that
+# stand here (trial.py, packed_files.py), and its arguments.
 function(python_test name label)
   cmake_parse_arguments(PARSE_ARGV 2 test "LONG" "" "PROPERTIES")
   list(POP_FRONT test_UNPARSED_ARGUMENTS script)
@@ -34,7 +35,7 @@ function(python_test name label)
     set(long LONG)
   endif()
   command_test(${name} ${label} ${long} COMMAND ${PYTHON3} -B ${tests}/${script} ${test_UNPARSED_ARGUMENTS}
-               PROPERTIES ${test_PROPERTIES})
+               PROPERTIES ENVIRONMENT PYTHONPATH=${tests} ${test_PROPERTIES})
 endfunction()
 
 # What the text of the sources and documents must be (checks/sources.py).
@@ -64,8 +65,8 @@ command_test("imports: no transcendental function of the C library" unit
                      -P ${tests}/imports.cmake)
 
 # No test is lost between `make check` and `make check-long`.
-python_test("checks: each test is run by one of make check and make check-long" unit checks/quick_and_long.py
-            ${source}/Makefile ${PROJECT_BINARY_DIR})
+python_test("checks: each test is run by one of make check and make check-long" unit checks/sources.py tests
+            ${PROJECT_BINARY_DIR})
 
 # The program from outside.
 
@@ -88,7 +89,7 @@ foreach(nth 1 20)
     set(long)
   endif()
   math(EXPR seconds "60 / ${nth}")
-  python_test("corpus: the schemas and the program allow ${name}" cli ${long} corpus/agree.py ${program} ${source}
+  python_test("corpus: the schemas and the program allow ${name}" cli ${long} corpus/agree.py ${program}
               ${made}/corpus/changed-${nth} ${nth} PROPERTIES COST ${seconds} PROCESSORS 2)
 endforeach()
 set(limit)
@@ -118,8 +119,8 @@ command_test("cli: verify writes its table as Markdown" cli
                              grep -q "^| step-limit | 1 | Largest stable step | 2 pi | 2 |" verdicts.md]]
                      ${program} ${files}/claims.json
              PROPERTIES FIXTURES_REQUIRED cli_files WORKING_DIRECTORY ${made}/cli)
-python_test("cli: verdicts hold the further numbers of a claim, and what is open is no claim" cli cli/verdicts.py ${program}
-            ${files} ${made}/cli/verdicts PROPERTIES FIXTURES_REQUIRED cli_files)
+python_test("cli: verdicts hold the further numbers of a claim, and what is open is no claim" cli cli/outputs.py ${program}
+            ${made}/cli/verdicts verdicts)
 # The runs of an ensemble, verdicts and a table with an ensemble's band do not depend on the number of threads. At last the same
 # as CSV, in a folder for all tables.
 command_test("cli: equal bytes with any number of threads" cli
@@ -146,33 +147,32 @@ command_test("cli: equal bytes with any number of threads" cli
              PROPERTIES FIXTURES_REQUIRED cli_files WORKING_DIRECTORY ${made}/cli)
 
 python_test("cli: check, verify and series find runs that were altered or are of another scene or engine" cli cli/altered.py
-            ${program} ${source} ${made}/cli/altered PROPERTIES COST 10)
-python_test("cli: tables as CSV hold the numbers of the tables that gnuplot draws" cli cli/csv_tables.py
-            ${source}/figures/catalogue.json ${PROJECT_BINARY_DIR}/series/exact PROPERTIES FIXTURES_REQUIRED exact_figures)
+            ${program} ${made}/cli/altered PROPERTIES COST 10)
+python_test("cli: tables as CSV hold the numbers of the tables that gnuplot draws" cli cli/outputs.py
+            ${program} ${made}/cli/csv_tables tables ${PROJECT_BINARY_DIR}/series/exact PROPERTIES FIXTURES_REQUIRED exact_figures)
 python_test("cli: responses are as their schema says, as CSV hold the same numbers, and are not left half written" cli
-            cli/responses.py ${program} ${source} ${made}/cli/responses)
-python_test("cli: with the name - a command prints what it writes to a file, and nothing else" cli cli/standard_output.py
-            ${program} ${source} ${made}/cli/standard_output PROPERTIES COST 5)
+            cli/responses.py ${program} ${made}/cli/responses)
+python_test("cli: with the name - a command prints what it writes to a file, and nothing else" cli cli/outputs.py
+            ${program} ${made}/cli/standard_output standard_output PROPERTIES COST 5)
 python_test("cli: a map has the best point, the margin and the cells of its table, as Python's csv reads it" cli cli/map.py
-            ${program} ${source} ${made}/cli/map PROPERTIES COST 4)
+            ${program} ${made}/cli/map PROPERTIES COST 4)
 python_test("cli: the table of design charts has the means of its sweep, and takes no sweep of another plan" cli
-            cli/design_charts.py ${program} ${source} ${made}/cli/design_charts)
+            cli/outputs.py ${program} ${made}/cli/design_charts design_charts)
 python_test("cli: what design says of a design is what run and sweep say of it, with any number of threads" cli cli/designs.py
-            ${program} ${source} ${made}/cli/designs PROPERTIES COST 5)
+            ${program} ${made}/cli/designs PROPERTIES COST 5)
 python_test("cli: sweeps have the same bytes however they are made, hold the numbers of runs, and are not mixed" cli
-            cli/sweeps.py ${program} ${source} ${made}/cli/sweeps PROPERTIES COST 10)
+            cli/sweeps.py ${program} ${made}/cli/sweeps PROPERTIES COST 10)
 python_test("cli: compare finds what was done to a record, and fits the numbers it was made with" cli LONG cli/compare.py
-            ${program} ${source} ${made}/cli/compare PROPERTIES COST 30)
+            ${program} ${made}/cli/compare PROPERTIES COST 30)
 
 # impact-damper report: its pages, and what it does where something is missing.
-set(mast ${source}/data/examples/mast.json)
 python_test("report: pages about very different scenes are whole, and their numbers those of a run" pipeline LONG
-            own_report/scenes.py ${program} ${mast} ${made}/own_report/scenes PROPERTIES FIXTURES_SETUP own_pages)
+            own_report/scenes.py ${program} ${made}/own_report/scenes PROPERTIES FIXTURES_SETUP own_pages)
 python_test("report: a page in units, one of a forced scene and one of several dampers are whole, and their numbers those of a run"
-            pipeline own_report/scenes.py ${program} ${mast} ${made}/own_report/two_scenes "slip of the units" "two motions" "several")
+            pipeline own_report/scenes.py ${program} ${made}/own_report/two_scenes "slip of the units" "two motions" "several")
 python_test("report: without gnuplot, interrupted, or moved away" pipeline own_report/hindered.py ${program}
             ${made}/own_report/hindered)
-python_test("report: its pages in a browser" paper LONG own_report/browser.py ${made}/own_report/scenes
+python_test("report: its pages in a browser" paper LONG paper/browser.py ReportsAboutScenes ${made}/own_report/scenes
             PROPERTIES FIXTURES_REQUIRED own_pages)
 
 # A small catalogue from its scene to its figures, and what happens when something between is broken.
@@ -208,18 +208,18 @@ endforeach()
 refreshed_test("readme: docs/report.md has the numbers and verdicts of the results" ${compare} docs/report.md)
 refreshed_test("readme: the pictures of the examples are the program's"
                sh -c [[by=checks/compare.sh
-                       cmp -s "$1/data/reference/made_with.txt" "$2/data/reference/made_with.txt" || by=same_bits/drawn.py
-                       cd "$1/data/examples" && exec "$0/$by" . "$2/data/examples" *.svg]] ${tests} ${source} ${new})
+                       cmp -s "$1/data/reference/made_with.txt" "$2/data/reference/made_with.txt" || by="same_bits/differences.py --drawn"
+                       cd "$1/data/examples" && exec "$0"/$by . "$2/data/examples" *.svg]] ${tests} ${source} ${new})
 refreshed_test("paper: every output and verdict printed in it is the program's" ${compare} paper/claims.md paper/deviations.md)
 refreshed_test("reference: tables, figures and sums are what the program makes"
-               ${tests}/same_bits/reference.py ${source}/data/reference ${new}/data/reference)
+               ${tests}/same_bits/differences.py --reference ${source}/data/reference ${new}/data/reference)
 
 # What the project says of itself to those who cite it, held against its formats and against the files.
 refreshed_test("citing: what describes the project for programs is up to date" ${compare} CITATION.cff codecheck.yml)
-python_test("citing: CITATION.cff, codecheck.yml and the RO-Crate keep to their formats" regression citing/test_formats.py ${new}
+python_test("citing: CITATION.cff, codecheck.yml and the RO-Crate keep to their formats" regression citing/formats.py ${new}
             PROPERTIES FIXTURES_REQUIRED refreshed)
 python_test("citing: every stamp leads from its picture to its data, and back to the picture" regression citing/leads_back.py
-            --program ${program} --new ${new} --folder ${made}/citing/tree PROPERTIES FIXTURES_REQUIRED refreshed)
+            ${program} ${made}/citing/tree ${new} PROPERTIES FIXTURES_REQUIRED refreshed)
 python_test("citing: an archive has the same bytes twice, what the manifest lists, and its commit" regression LONG
             citing/archive.py ${new} ${made}/citing/archive PROPERTIES FIXTURES_REQUIRED refreshed)
 
@@ -227,8 +227,8 @@ python_test("citing: an archive has the same bytes twice, what the manifest list
 python_test("paper: the numbers of the report follow the results, none is typed" paper LONG paper/report.py ${PROJECT_BINARY_DIR}
             ${new}/data/reference/verdicts.json ${made}/paper
             PROPERTIES FIXTURES_REQUIRED "exact_figures;refreshed" FIXTURES_SETUP report)
-python_test("paper: the report in a browser" paper LONG paper/browser.py ${made}/paper/as-it-is/report.html
-            ${PROJECT_BINARY_DIR}/series/exact ${made}/paper/screenshots PROPERTIES FIXTURES_REQUIRED report COST 25)
+python_test("paper: the report in a browser" paper LONG paper/browser.py Report
+            ${made}/paper/as-it-is/report.html ${PROJECT_BINARY_DIR}/series/exact ${made}/paper/screenshots PROPERTIES FIXTURES_REQUIRED report COST 25)
 
 # verify must notice a wrong model.
 command_test("verify: three planted faults are noticed" regression LONG
@@ -238,7 +238,8 @@ command_test("verify: three planted faults are noticed" regression LONG
 # The first minutes: what `make deps` and `make install` do, docs/adding.md tried with the installed program, and
 # examples/ with the installed library.
 set(root ${made}/installed/root)
-python_test("installed: .ci/install waits for another apt" cli installed/waits.py ${source} ${made}/installed/waits)
+set(installed ${root}/opt/it/bin/impact-damper)
+python_test("installed: .ci/install waits for another apt" cli installed/waits.py ${source}/.ci/install ${made}/installed/waits)
 command_test("installed: configuring says nothing of the bench to who has not asked for it" cli LONG
              COMMAND sh -c [[said=$(cmake -S "$0" -B "$1" -G Ninja 2>&1) && said=$said$(cmake "$1" -DBUILD_TESTING=ON 2>&1) &&
                              echo "$said" && ! echo "$said" | grep -iE "bench:|odeint|sundials|siconos|float128"]]
@@ -248,14 +249,14 @@ command_test("installed: program, data, man page and completions are put under D
                      ${PROJECT_BINARY_DIR} ${root}
              PROPERTIES FIXTURES_SETUP installed RUN_SERIAL ON)
 python_test("installed: the program finds its files from any folder, and pages and shells know every option" cli
-            installed/installed.py ${root}/opt/it ${program} ${source} ${exact_runs} ${made}/installed/elsewhere
+            installed/installed.py ${installed} ${made}/installed/elsewhere ${program} ${exact_runs}
             PROPERTIES FIXTURES_REQUIRED "installed;exact_figures")
-python_test("installed: docs/adding.md works as it says, outside the tree" cli installed/adding.py ${root}/opt/it ${source}
+python_test("installed: docs/adding.md works as it says, outside the tree" cli installed/adding.py ${installed}
             ${made}/installed/adding PROPERTIES FIXTURES_REQUIRED installed)
 # With other sanitizers than the library's, or none, a stranger's program does not link.
 if(NOT CMAKE_CXX_FLAGS MATCHES "sanitize=")
   python_test("installed: a stranger's project finds the library and gets the program's bytes" cli LONG installed/library.py
-              ${root}/opt/it ${source} ${made}/installed/library ${CMAKE_CXX_COMPILER}
+              ${installed} ${made}/installed/library ${CMAKE_CXX_COMPILER}
               PROPERTIES FIXTURES_REQUIRED installed COST 40)
 endif()
 
@@ -265,8 +266,8 @@ if(TARGET impact_damper_python)
                COMMAND ${MODULE_PYTHON} -B ${tests}/python/test_module.py ${program} $<TARGET_FILE:impact_damper_python>
                        ${source} ${made}/python)
   command_test("python: the module is installed where this Python looks, and elsewhere it is said how to have it found" unit
-               COMMAND ${MODULE_PYTHON} -B ${tests}/python/installed.py ${PROJECT_BINARY_DIR} ${PROJECT_VERSION}
-                       ${made}/python/installed)
+               COMMAND ${MODULE_PYTHON} -B ${tests}/python/installed.py ${PROJECT_BINARY_DIR}
+                       ${made}/python/installed ${PROJECT_VERSION} PROPERTIES ENVIRONMENT PYTHONPATH=${tests})
 endif()
 
 # What is ended, or hindered, from outside (nothing_lost/scratch.py): nothing is lost, nothing is half done. The longest form
@@ -276,8 +277,8 @@ target_link_libraries(hold PRIVATE impact_damper_options ${CMAKE_DL_LIBS})
 # outside_test(NAME COST SCRIPT ARGUMENT...)
 function(outside_test name cost script)
   string(MAKE_C_IDENTIFIER "${name}" folder)
-  python_test("nothing lost: ${name}" nothing_lost LONG nothing_lost/${script} --program ${program}
-              --folder ${made}/nothing_lost/${folder} ${ARGN} PROPERTIES COST ${cost})
+  python_test("nothing lost: ${name}" nothing_lost LONG nothing_lost/${script} ${program}
+              ${made}/nothing_lost/${folder} ${ARGN} PROPERTIES COST ${cost})
 endfunction()
 outside_test("killed at random moments" 20 killed.py --hold $<TARGET_FILE:hold> --kills 30 --figures 7 10 13)
 outside_test("interrupted, and made twice at once" 15 interrupted.py)
@@ -287,8 +288,8 @@ outside_test("beyond all bounds" 25 bounds.py --scenes 6)
 # The checks themselves, against a program that writes directly to the final name, and takes its time.
 outside_test("a program that writes half files is found out" 130 planted.py --hold $<TARGET_FILE:hold>)
 add_custom_target(kills
-  COMMAND ${PYTHON3} ${tests}/nothing_lost/killed.py --program ${program} --hold $<TARGET_FILE:hold>
-          --folder ${made}/nothing_lost/kills --kills 110
+  COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${tests} ${PYTHON3} ${tests}/nothing_lost/killed.py ${program}
+          ${made}/nothing_lost/kills --hold $<TARGET_FILE:hold> --kills 110
   DEPENDS impact-damper hold USES_TERMINAL VERBATIM)
 
 # Six seconds for each reader, two readers at a time.

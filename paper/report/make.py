@@ -23,8 +23,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 from blocks import Html, Latex, Markdown, filled  # noqa: E402
-from formulas import tidied  # noqa: E402
-from mathematics import appendix  # noqa: E402
+from mathematics import appendix, tidied  # noqa: E402
 from values import Mistake, Values  # noqa: E402
 from pages import damper_pieces, project_pieces  # noqa: E402
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the text of sources and documents must be.
+"""What the text of sources, documents and the Makefile must be.
 
     sources.py includes     each source has what it uses of the C++ standard library from a header that it or a header of this
                             project includes, not from whatever this compiler's standard library includes in its own headers;
@@ -13,12 +13,15 @@
     sources.py scan         nothing in src/ could make a result depend on more than its input. Words, not meanings: what is
                             found is either changed or allowed below with the reason why it can stay. Variables that nobody
                             set cannot be found by words; same_bits/matrix.py runs with patterns in them instead
+    sources.py tests BUILD  each test of CTest is run by `make check` or `make check-long`; only what makes a fixture may be run by both
 
 Exit code 1: faults, one a line.
 """
 import functools
+import json
 import os
 import re
+import subprocess
 import sys
 from collections import Counter
 from pathlib import Path
@@ -268,11 +271,26 @@ def scan():
     return findings(SOURCE / "src"), True, f"{len(ALLOWED)} words are allowed"
 
 
-def main() -> int:
-    faults, is_enough, summary = {"includes": includes, "links": links, "equations": equations, "layers": layers, "scan": scan}[sys.argv[1]]()
-    print("\n".join([*faults, f"{summary}, {len(faults)} faults"]))
-    return 1 if faults or not is_enough else 0
+# tests
+def listed(*options) -> dict:
+    """Of each test that ctest would run with these options: its properties, by its name."""
+    shown = subprocess.run(["ctest", "--test-dir", sys.argv[2], "--show-only=json-v1", *options], check=True, stdout=subprocess.PIPE)
+    return {test["name"]: {each["name"]: each["value"] for each in test["properties"]} for test in json.loads(shown.stdout)["tests"]}
+
+
+def tests():
+    rules = {target: re.search(rf"^{target}:.*\n\t@\$\(run_tests\) (-LE?) '(.*)'$", text_of(SOURCE / "Makefile"), re.M).groups()
+             for target in ("test", "check-long")}
+    every, quick, long = listed(), *(listed(option, regex.replace("$$", "$")) for option, regex in rules.values())
+    both = quick.keys() & long.keys()
+    faults = [f"neither runs {name}" for name in every.keys() - quick.keys() - long.keys()]
+    faults += [f"both run {name}" for name in both if "FIXTURES_SETUP" not in every[name]]
+    faults += [f"make check runs {name}, whose label is long" for name in quick if "long" in every[name]["LABELS"]]
+    return faults, bool(long), f"{len(every)} tests: {len(quick)} by make check, {len(long)} by make check-long, {len(both)} of them by both"
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    faults, is_enough, summary = {"includes": includes, "links": links, "equations": equations, "layers": layers, "scan": scan,
+                                  "tests": tests}[sys.argv[1]]()
+    print("\n".join([*faults, f"{summary}, {len(faults)} faults"]))
+    sys.exit(bool(faults) or not is_enough)

@@ -1,8 +1,7 @@
-#!/usr/bin/env python3
 """What paper/archive writes, in a repository of its own that holds this source folder and what paper/refresh made of it:
 the same bytes from equal commits, whatever is around; everything that the manifest lists, with its sums; the commit.
 
-    archive.py NEW FOLDER      NEW like the source folder, by paper/refresh; FOLDER is made anew, to work in
+    archive.py NEW FOLDER      NEW like the source folder, by paper/refresh
 """
 import hashlib
 import json
@@ -14,16 +13,10 @@ import sys
 import tarfile
 from pathlib import Path
 
-SOURCE = Path(__file__).resolve().parents[2]
-NEW, FOLDER = (Path(each).resolve() for each in sys.argv[1:])
+from trial import demand, faults, finish, skip
+from trial import folder as FOLDER, program as NEW, source as SOURCE
+
 COPY, OTHER, BUILD = FOLDER / "copy", FOLDER / "other", FOLDER / "copy/build"
-faults = []
-
-
-def wanted(holds, what):
-    if not holds:
-        faults.append(what)
-
 
 def run(*command, cwd=COPY, **around):
     return subprocess.run(command, cwd=cwd, env={**os.environ, "GIT_CONFIG_NOSYSTEM": "1", **around}, capture_output=True,
@@ -39,7 +32,6 @@ def git(*arguments, cwd=COPY):
 
 
 def make_copy():
-    shutil.rmtree(FOLDER, ignore_errors=True)
     shutil.copytree(SOURCE, COPY, symlinks=True,
                     ignore=lambda folder, names: [name for name in names if name in (".git", "__pycache__") or
                                                   (Path(folder) == SOURCE and name.startswith("build"))])
@@ -54,9 +46,9 @@ def make_copy():
 
 def archive(cwd=COPY, build=BUILD, **around) -> Path:
     done = run(cwd / "paper/archive", build, **around)
-    wanted(done.returncode == 0, f"exit code {done.returncode}: {done.stderr}")
+    demand(done.returncode == 0, f"exit code {done.returncode}: {done.stderr}")
     files = [path for path in build.iterdir() if path.is_file()]
-    wanted(len(files) == 1 and files[0].suffix == ".gz", f"files left: {files}")
+    demand(len(files) == 1 and files[0].suffix == ".gz", f"files left: {files}")
     return files[0]
 
 
@@ -81,21 +73,20 @@ def provenance(source: Path) -> bytes:
     output.unlink(missing_ok=True)
     done = run("cmake", f"-DSOURCE={source}", f"-DINPUT={source}/src/impact_damper/io/provenance.cpp.in",
                f"-DOUTPUT={output}", "-P", source / "src/provenance.cmake", HOME=str(FOLDER))
-    wanted(done.returncode == 0, f"provenance: {done.stderr}")
+    demand(done.returncode == 0, f"provenance: {done.stderr}")
     return output.read_bytes()
 
 
 if "$Format:" not in (SOURCE / "src/provenance.cmake").read_text():
-    print("skipped: these sources are an archive's, and say whose commit they are")
-    sys.exit(77)
+    skip("these sources are an archive's, and say whose commit they are")
 make_copy()
 first = archive(TZ="UTC", HOME=str(FOLDER))
 bytes_of_first = first.read_bytes()
 stamp = first.stat().st_mtime_ns
 archive(HOME=str(FOLDER))
-wanted(first.stat().st_mtime_ns == stamp, "equal bytes get another time stamp")
+demand(first.stat().st_mtime_ns == stamp, "equal bytes get another time stamp")
 
-wanted(bytes_of_first[3:8] == bytes(5), "gzip's header has a name or a time")
+demand(bytes_of_first[3:8] == bytes(5), "gzip's header has a name or a time")
 
 # Another clone of the same commit, where git is told other things.
 (FOLDER / "elsewhere").mkdir()
@@ -106,7 +97,7 @@ shutil.copytree(BUILD / "paper", OTHER / "build/paper")
 os.umask(0o077)
 other = archive(OTHER, OTHER / "build", TZ="Asia/Tokyo", HOME=str(FOLDER / "elsewhere"), GZIP="-1")
 os.umask(0o022)
-wanted(other.name == first.name and other.read_bytes() == bytes_of_first, "another clone's archive has other bytes")
+demand(other.name == first.name and other.read_bytes() == bytes_of_first, "another clone's archive has other bytes")
 
 # What is in it.
 with tarfile.open(first) as tar:
@@ -114,67 +105,64 @@ with tarfile.open(first) as tar:
     tar.extractall(BUILD / "unpacked")  # in the build folder of a repository, which is not the archive's
 name = first.name.removesuffix(".tar.gz")
 unpacked = BUILD / "unpacked" / name
-wanted({member.mtime for member in members} == {1580702706}, "times other than the commit's")
-wanted({(member.uid, member.uname) for member in members} == {(0, "root")}, "somebody's name")
-wanted({member.mode for member in members} <= {0o644, 0o755}, "modes of somebody's umask")
+demand({member.mtime for member in members} == {1580702706}, "times other than the commit's")
+demand({(member.uid, member.uname) for member in members} == {(0, "root")}, "somebody's name")
+demand({member.mode for member in members} <= {0o644, 0o755}, "modes of somebody's umask")
 files = {member.name.removeprefix(name + "/") for member in members if member.isfile()}
 committed = set(git("ls-files", "-z").split("\0")) - {""}
-wanted(files == committed | {"report.html", "report.pdf", "ro-crate-metadata.json"}, f"files: {files ^ committed}")
+demand(files == committed | {"report.html", "report.pdf", "ro-crate-metadata.json"}, f"files: {files ^ committed}")
 differing = [file for file in committed if (unpacked / file).read_bytes() != (COPY / file).read_bytes()]
 substituted = re.findall(r"^(\S+) export-subst$", (SOURCE / ".gitattributes").read_text(), re.M)
-wanted(sorted(differing) == sorted(substituted), f"other bytes than those committed: {differing}")
-wanted((unpacked / "report.pdf").read_text() == "report.pdf of the test\n", "another report")
+demand(sorted(differing) == sorted(substituted), f"other bytes than those committed: {differing}")
+demand((unpacked / "report.pdf").read_text() == "report.pdf of the test\n", "another report")
 crate = json.loads((unpacked / "ro-crate-metadata.json").read_text())
 described = {each["@id"]: each["sha256"] for each in crate["@graph"] if "sha256" in each}
-wanted(len(described) > 60 and all(hashlib.sha256((unpacked / file).read_bytes()).hexdigest() == sum for file, sum in described.items()),
+demand(len(described) > 60 and all(hashlib.sha256((unpacked / file).read_bytes()).hexdigest() == sum for file, sum in described.items()),
        "the crate has other sums than the files")
 faults += listed_problems(unpacked)
 sums = run("sha256sum", "-c", "--quiet", "SHA256SUMS", cwd=unpacked / "data/reference")
-wanted(sums.returncode == 0, f"SHA256SUMS: {sums.stdout}")
+demand(sums.returncode == 0, f"SHA256SUMS: {sums.stdout}")
 commit = git("rev-parse", "--short=12", "HEAD").strip()
-wanted(provenance(unpacked) == provenance(COPY), "a build from the archive has another provenance")
-wanted(f'.commit = "{commit}"'.encode() in provenance(unpacked), f"the archive does not know its commit {commit}")
+demand(provenance(unpacked) == provenance(COPY), "a build from the archive has another provenance")
+demand(f'.commit = "{commit}"'.encode() in provenance(unpacked), f"the archive does not know its commit {commit}")
 with (COPY / "src/impact_damper/run.cpp").open("a") as file:
     file.write("\n")
-wanted(f'.commit = "{commit}-dirty"'.encode() in provenance(COPY), "a changed source is not told")
+demand(f'.commit = "{commit}-dirty"'.encode() in provenance(COPY), "a changed source is not told")
 
 # What is rejected, and leaves the archive as it was.
 for what, told in (("changed", " M src/impact_damper/run.cpp"), ("surplus", "?? surplus.txt")):
     done = run(COPY / "paper/archive", BUILD, HOME=str(FOLDER))
-    wanted(done.returncode == 1 and told in done.stderr, f"{what}: exit code {done.returncode}: {done.stderr}")
-    wanted(run(COPY / "paper/archive", HOME=str(FOLDER)).returncode == 1, f"{what}: not told beforehand")
+    demand(done.returncode == 1 and told in done.stderr, f"{what}: exit code {done.returncode}: {done.stderr}")
+    demand(run(COPY / "paper/archive", HOME=str(FOLDER)).returncode == 1, f"{what}: not told beforehand")
     git("checkout", "-q", ".")
     (COPY / "surplus.txt").write_text("typed\n")
 (COPY / "surplus.txt").unlink()
 (BUILD / "paper/report.pdf").unlink()
 done = run(COPY / "paper/archive", BUILD, HOME=str(FOLDER))
-wanted(done.returncode == 1 and "report.pdf is missing: make paper" in done.stderr, f"no report: {done.stderr}")
-wanted(first.read_bytes() == bytes_of_first, "a rejection has changed the archive")
+demand(done.returncode == 1 and "report.pdf is missing: make paper" in done.stderr, f"no report: {done.stderr}")
+demand(first.read_bytes() == bytes_of_first, "a rejection has changed the archive")
 
 # Without room: the old one stays, nothing unfinished, not even of a process that was killed.
 (BUILD / "paper/report.pdf").write_text("another report\n")
 (BUILD / f".{name}.999999999.tmp.gz").write_text("abandoned")
 done = run("sh", "-c", f"ulimit -f 1000; exec {COPY}/paper/archive {BUILD}", HOME=str(FOLDER))
-wanted(done.returncode == 5 and "cannot be written" in done.stderr, f"no room: exit code {done.returncode}: {done.stderr}")
+demand(done.returncode == 5 and "cannot be written" in done.stderr, f"no room: exit code {done.returncode}: {done.stderr}")
 left = sorted(path.name for path in BUILD.iterdir())
-wanted(left == sorted([first.name, "paper", "unpacked"]), f"left without room: {left}")
-wanted(first.read_bytes() == bytes_of_first, "without room the archive is changed")
+demand(left == sorted([first.name, "paper", "unpacked"]), f"left without room: {left}")
+demand(first.read_bytes() == bytes_of_first, "without room the archive is changed")
 
 # These checks, against what is faulty.
 (unpacked / "figures/fig08.gp").write_text("\n")
-wanted(listed_problems(unpacked) == ["figures/fig08.gp is not as the manifest says"], "a changed script is not found out")
+demand(listed_problems(unpacked) == ["figures/fig08.gp is not as the manifest says"], "a changed script is not found out")
 script = (OTHER / "paper/archive").read_text()
 for told in ("tar.umask=0022", "core.autocrlf=false"):
-    wanted(script.count(told) == 1, f"paper/archive no longer says {told}")
+    demand(script.count(told) == 1, f"paper/archive no longer says {told}")
     (OTHER / "paper/archive").write_text(script.replace(f"-c {told} ", ""))
     git("-c", "core.autocrlf=false", "update-index", "--assume-unchanged", "paper/archive", cwd=OTHER)
     other.unlink()
     done = run(OTHER / "paper/archive", OTHER / "build", HOME=str(FOLDER / "elsewhere"))
-    wanted(done.returncode == 0 and other.read_bytes() != bytes_of_first, f"without {told}: not found out: {done.stderr}")
+    demand(done.returncode == 0 and other.read_bytes() != bytes_of_first, f"without {told}: not found out: {done.stderr}")
 
-for fault in faults:
-    print(fault)
-print(f"{len(files)} files, {len(bytes_of_first)} bytes, {len(faults)} faults")
 if not faults:
     shutil.rmtree(FOLDER)
-sys.exit(bool(faults))
+finish(f"{len(files)} files, {len(bytes_of_first)} bytes, ")

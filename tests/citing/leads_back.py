@@ -1,9 +1,7 @@
-#!/usr/bin/env python3
 """From a picture back to its data: what `impact-damper cite` says of every stamp is held against the files themselves,
 and the commands that it prints are run and make the same picture again.
 
-    leads_back.py --program PROGRAM --new NEW --folder FOLDER
-                               NEW like the source folder, by paper/refresh; FOLDER is made anew, to work in
+    leads_back.py PROGRAM FOLDER NEW      NEW like the source folder, by paper/refresh
 """
 import hashlib
 import json
@@ -13,25 +11,18 @@ import subprocess
 import sys
 from pathlib import Path
 
-sys.dont_write_bytecode = True
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "nothing_lost"))
-from scratch import SOURCE, arguments, make_tree  # noqa: E402
+import trial
+from trial import demand, finish, folder, program, run, source
 
-options = arguments(__doc__.split("\n")[0])
-options.add_argument("--new", type=Path, required=True)
-options = options.parse_args()
-MANIFEST = options.new / "data/reference/manifest.json"
-faults = []
+sys.path.insert(0, str(source / "tests/nothing_lost"))
+from scratch import make_tree  # noqa: E402
 
-
-def wanted(holds, what):
-    if not holds:
-        faults.append(what)
-
+new = Path(trial.words[0])
+MANIFEST = new / "data/reference/manifest.json"
 
 def cite(*typed) -> str:
-    done = subprocess.run([options.program, "cite", "--manifest", MANIFEST, *typed], capture_output=True, text=True)
-    wanted(done.returncode == 0 and not done.stderr, f"cite {typed}: exit code {done.returncode}: {done.stderr}")
+    done = run(program, "cite", "--manifest", MANIFEST, *typed)
+    demand(not done.stderr, f"cite {typed}: {done.stderr}")
     return done.stdout
 
 
@@ -58,7 +49,7 @@ def sum_of(file: Path) -> str:
 
 def git(*arguments, content: bytes = None) -> str:
     """What git says; nothing without a repository of this project."""
-    done = subprocess.run(["git", "-C", SOURCE, *arguments], input=content, capture_output=True)
+    done = subprocess.run(["git", "-C", source, *arguments], input=content, capture_output=True)
     return done.stdout.decode().strip() if done.returncode == 0 else ""
 
 
@@ -98,53 +89,48 @@ def bibtex_problems(text: str) -> list:
 
 
 manifest = json.loads(MANIFEST.read_text())
-complaint = said_by_bibtex(cite("--figure", "8"), options.folder.parent / "bibtex")
-wanted(not complaint, f"BibTeX complains: {complaint}")
+complaint = said_by_bibtex(cite("--figure", "8"), folder.parent / "bibtex")
+demand(not complaint, f"BibTeX complains: {complaint}")
 # The program knows the commit that it was built at, which need not be today's.
-commit = re.search(r"\((.*)\)", subprocess.run([options.program, "--version"], capture_output=True, text=True).stdout)[1]
+commit = re.search(r"\((.*)\)", trial.call("--version"))[1]
 tree = git("rev-parse", f"{commit}^{{tree}}")
-wanted(f", commit {commit}, \\texttt{{swh:1:dir:{tree}}}}},\n" in without_breaks(cite()) if tree else "swh:1:dir" not in cite(),
+demand(f", commit {commit}, \\texttt{{swh:1:dir:{tree}}}}},\n" in without_breaks(cite()) if tree else "swh:1:dir" not in cite(),
        f"commit {commit}, tree {tree}: {cite()}")
 version = manifest["software"]["version"]
 figures = {figure["figure"]: figure for figure in manifest["figures"]}
-wanted(set(figures) == {*"ABCDEFGH", *map(str, range(1, 16))}, f"figures {sorted(figures)}")
+demand(set(figures) == {*"ABCDEFGH", *map(str, range(1, 16))}, f"figures {sorted(figures)}")
 for number, figure in figures.items():
     table, script = figure["tables"][:1], figure["script"]["file"]
-    stamped = options.new / table[0]["file"] if table else SOURCE / script
+    stamped = new / table[0]["file"] if table else source / script
     stamp = f"{sum_of(stamped)[:8]} · {version}"
-    picture = (options.new / figure["picture"]["file"]).read_text()
-    wanted(f">{stamp}</text>" in picture, f"figure {number}: its picture does not carry {stamp}")
+    picture = (new / figure["picture"]["file"]).read_text()
+    demand(f">{stamp}</text>" in picture, f"figure {number}: its picture does not carry {stamp}")
     text = cite("--figure", number)
-    wanted(rows(text, "stamp") == [stamp], f"figure {number}: stamp {rows(text, 'stamp')}, wanted {stamp}")
-    wanted(rows(text, "script") == [script], f"figure {number}: script")
-    wanted(rows(text, "scenes") == [each["file"] for each in figure["scenes"]], f"figure {number}: scenes")
-    wanted(not bibtex_problems(text), f"figure {number}: {bibtex_problems(text)}")
+    demand(rows(text, "stamp") == [stamp], f"figure {number}: stamp {rows(text, 'stamp')}, wanted {stamp}")
+    demand(rows(text, "script") == [script], f"figure {number}: script")
+    demand(rows(text, "scenes") == [each["file"] for each in figure["scenes"]], f"figure {number}: scenes")
+    demand(not bibtex_problems(text), f"figure {number}: {bibtex_problems(text)}")
     hashed = git("hash-object", "--stdin", content=stamped.read_bytes())
-    wanted(not hashed or f"swh:1:cnt:{hashed}}}}}\n" in without_breaks(text), f"figure {number}: no SWHID {hashed}")
+    demand(not hashed or f"swh:1:cnt:{hashed}}}}}\n" in without_breaks(text), f"figure {number}: no SWHID {hashed}")
     for typed in (stamp, stamp.upper(), stamp[:8], stamp[:8].upper(), f" {stamp[:8]}  {version} ", sum_of(stamped)):
-        wanted(cite("--stamp", typed) == text, f"--stamp {typed!r} does not say what --figure {number} says")
+        demand(cite("--stamp", typed) == text, f"--stamp {typed!r} does not say what --figure {number} says")
     for other in figure["tables"][1:]:
         text = cite("--stamp", other["sha256"][:8])
-        wanted(f"% Figure {number} of" in text and f"by the {other['engine']} engine" in text,
+        demand(f"% Figure {number} of" in text and f"by the {other['engine']} engine" in text,
                f"figure {number}: {other['engine']}")
-wanted(bibtex_problems("% a@b\n@misc{a,\n  title = {b}\n  note = {c}\n}\n"), "a faulty entry is not found out")
+demand(bibtex_problems("% a@b\n@misc{a,\n  title = {b}\n  note = {c}\n}\n"), "a faulty entry is not found out")
 
 # As in the folder of the sources: each command that is printed.
-tree = options.folder
-make_tree(tree, options.program.resolve())
+tree = make_tree(folder, program)
 for typed in (("--figure", "5"), ("--figure", "A"), ("--stamp", figures["5"]["tables"][1]["sha256"][:8])):
     text = cite(*typed)
     for command in commands(text):
-        done = subprocess.run(command, cwd=tree, capture_output=True, text=True)
-        wanted(done.returncode == 0, f"{command}: {done.stdout}{done.stderr}")
+        run(*command)
     [name] = rows(text, "picture")
     made = tree / "build/figures" / Path(name).name if name.startswith("data/") else tree / name
-    wanted(f">{rows(text, 'stamp')[0]}</text>" in (made.read_text() if made.exists() else ""), f"{made}: its stamp")
+    demand(f">{rows(text, 'stamp')[0]}</text>" in (made.read_text() if made.exists() else ""), f"{made}: its stamp")
     if name.startswith("data/"):
-        wanted(made.exists() and made.read_bytes() == (options.new / name).read_bytes(), f"{name} is not made again")
-wanted(not list(tree.glob("build/figures/fig08.*")), "more than the figure asked for is made")
+        demand(made.exists() and made.read_bytes() == (new / name).read_bytes(), f"{name} is not made again")
+demand(not list(tree.glob("build/figures/fig08.*")), "more than the figure asked for is made")
 
-for fault in faults:
-    print(fault)
-print(f"{len(figures)} figures, {len(faults)} faults")
-sys.exit(bool(faults))
+finish(f"{len(figures)} figures, ")

@@ -18,8 +18,7 @@ import shutil
 import subprocess
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from packed_files import read, unpack  # noqa: E402
+from packed_files import read, unpack
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("program", type=lambda text: pathlib.Path(text).resolve())

@@ -1,12 +1,10 @@
 """What `design` says of a design is what `run` and `sweep` say of it, with any number of threads.
-
-    designs.py PROGRAM SOURCE FOLDER        FOLDER, made anew, is for the files
 """
 import csv
 import json
 import math
 
-from trial import call, demand, finish, has_its_digest, read, read_json, source, validator, write
+from trial import call, demand, demand_valid, finish, has_its_digest, read, read_json, source, write
 
 
 def close(a, b, digits=12):
@@ -36,15 +34,14 @@ for threads in (2, 5):
     demand(read("n.json") == text, f"{threads} threads: another file")
 answer = json.loads(text)
 
-schema = validator("design")
-demand(not list(schema.iter_errors(answer)), f"not as the schema says: {[error.message for error in schema.iter_errors(answer)]}")
+demand_valid("design", answer, "1.json")
 demand(has_its_digest(text), "the file's own digest")
 demand("1.json: valid" in call("check", "design", "1.json"), "check does not allow a file as it was written")
 write("altered.json", text.replace('"met": true', '"met": false'))
 call("check", "design", "altered.json", code=3)
 call("check", "comparison", "1.json", code=3)
 
-# The plan of the check, made by `sweep`, has the numbers of the first design.
+# The plan of the check, made by `sweep`, has the numbers of the first design (all of them: ../sweeps/lightest_design.cpp).
 best = answer["designs"][0]
 call("sweep", "plan.json", "-o", "check.csv")
 rows = list(csv.DictReader(read("check.csv").splitlines()))
@@ -54,10 +51,6 @@ demand(best["in_time"] == sum(t <= 5 for t in times), f"in time: {best['in_time'
 demand(times[-1] == best["slowest"] and times[799] == best["time_of_share"], f"times: {times[-1]}, {times[799]}, {best}")
 for key in ("largest_impact_speed", "largest_wall_force"):
     demand(max(float(row[key]) for row in rows) == best[key], f"{key}: {best[key]}")
-spread = [float(row["restitution"]) - 0.6 for row in rows] + [float(row["clearance"]) / best["clearance"] - 1 for row in rows]
-demand(-0.1 <= min(spread) < -0.099 and 0.099 < max(spread) <= 0.1, f"tolerances: {min(spread)} to {max(spread)}")
-demand(min(spread[1000:]) < -0.099 and min(spread[:1000]) < -0.099 and max(spread[1000:]) > 0.099 and max(spread[:1000]) > 0.099,
-       "tolerances are not on both sides")
 
 # The design and some of its neighbours, by `run`. Samples are a 20 000th of half a period apart, 8e-6 s.
 designed = {**mast, "secondary_mass": best["secondary_mass"], "clearance": best["clearance"]}
@@ -66,18 +59,12 @@ for row in rows[::250]:
     scene = {**designed, "clearance": float(row["clearance"]), "restitution": float(row["restitution"])}
     demand(abs(first_peak_below(scene, 20) - float(row["time_to_amplitude_20"])) < 1e-5, f"{row}: time")
 
-# Other draws give another check and nearly the same design, confirmed or not.
-call(*words, "--seed", 5, "-o", "other.json", code=None)
-other = read_json("other.json")["designs"][0]
-demand(other["slowest"] != best["slowest"], "another seed has the same neighbours")
-demand(abs(math.log(other["secondary_mass"] / best["secondary_mass"])) < 0.1, f"another seed: {other['secondary_mass']} kg")
-
 # A scene without units: the mast with its box of 10 mm, in clearances of it. Times are in units of 0.05 s.
 same = ("design", "--mass-ratio", 0.04, "--damping-ratio", 0.002, "--x0", 6, "--to", 2, "--within", 100, "--share", 0.8, "--neighbours", 1000,
         "--secondary-mass", f"{best['secondary_mass'] / 40}:0.2", "--clearance", f"2:{best['clearance'] / 10}", "-o", "scaled.json")
 call(*same)
 scaled = read_json("scaled.json")
-demand(not list(schema.iter_errors(scaled)), "dimensionless: not as the schema says")
+demand_valid("design", scaled, "dimensionless")
 first = scaled["designs"][0]
 demand(scaled["units"]["time"] == "1/Omega_n" and close(first["secondary_mass"] * 40, best["secondary_mass"]) and
        close(first["clearance"] * 10, best["clearance"]), f"dimensionless: {first}")
@@ -92,6 +79,7 @@ demand("100 neighbours are too few to tell" in few and "give at least --neighbou
 said = call(*words[:6], 1.5, *words[7:], "-o", "none.json", code=1)
 none = read_json("none.json")
 demand("No design was found." in said and "A heavier secondary mass" in said, f"none: {said}")
-demand(not none["met"] and [each["secondary_mass"] for each in none["designs"]] == [8] and not list(schema.iter_errors(none)), f"none: {none}")
+demand(not none["met"] and [each["secondary_mass"] for each in none["designs"]] == [8], f"none: {none}")
+demand_valid("design", none, "none")
 
 finish()

@@ -1,6 +1,4 @@
 """A map of `map` is that of its table: best point, margin and the colour of each cell, as found by Python's csv module.
-
-    map.py PROGRAM SOURCE FOLDER        FOLDER, made anew, is for the files
 """
 import csv
 import hashlib
@@ -11,7 +9,7 @@ import re
 import shutil
 import statistics
 
-from trial import call, demand, finish, faults, folder, program, read, sealed, source, write
+from trial import call, demand, finish, faults, folder, read, sealed, source, write
 
 # The palette, and what of it reads in grey: CIE lightness rises by equal steps.
 script = (source / "figures/map.gp").read_text(encoding="utf-8")
@@ -46,6 +44,18 @@ def cells_of(table, x, y, z, where, statistic, best):
     how = {"median": statistics.median, "mean": statistics.fmean, "worst": worst}[statistic]
     return {point: "failed" if any(end != "done" for _, end in rows) else None if any(not value for value, _ in rows) else
             how([float(value) for value, _ in rows]) for point, rows in draws.items()}
+
+
+def measured(svg):
+    """The picture's axes as they are told in it: value_at(pixel, axis), its height, the axes."""
+    axes = json.loads(re.search(r"<metadata>(.*)</metadata>", svg)[1])["axes"][0]
+
+    def value_at(pixel, name):
+        _, low, high, from_pixel, to_pixel = axes[name]
+        part = (pixel - from_pixel) / (to_pixel - from_pixel)
+        return low * (high / low) ** part if name in axes["log"] else low + (high - low) * part
+
+    return value_at, float(re.search(r'<svg[^>]*? height="(\d+)"', svg)[1]), axes
 
 
 def differences(said, svg, cells, x, y, z, best):
@@ -88,16 +98,8 @@ def differences(said, svg, cells, x, y, z, best):
     if [int(n) for n in counts.groups()] != expected:
         found.append(f"{counts[0]}, not {expected}")
 
-    # The picture: which value lies where, by the axes that it tells of itself.
-    axes = json.loads(re.search(r"<metadata>(.*)</metadata>", svg)[1])["axes"][0]
-    height = float(re.search(r'<svg[^>]*? height="(\d+)"', svg)[1])
+    value_at, height, axes = measured(svg)
     least, most = min(values.values()), max(values.values())
-
-    def value_at(pixel, axis, name):
-        _, low, high, from_pixel, to_pixel = axes[name]
-        part = (pixel - from_pixel) / (to_pixel - from_pixel)
-        return low * (high / low) ** part if name in axes["log"] else low + (high - low) * part
-
     drawn = {}
     for red, green, blue, points in re.findall(
             r"<polygon fill = 'rgb\(\s*(\d+),\s*(\d+),\s*(\d+)\)' points = '([^']*)'", svg):
@@ -106,8 +108,8 @@ def differences(said, svg, cells, x, y, z, best):
         bottom, top = height - max(c[1] for c in corners), height - min(c[1] for c in corners)
         if right > axes["x"][4] + 1:
             continue  # the colour bar
-        inside = [(a, b) for a in xs for b in ys if value_at(left, axes, "x") < a < value_at(right, axes, "x") and
-                  value_at(bottom, axes, "y") < b < value_at(top, axes, "y")]
+        inside = [(a, b) for a in xs for b in ys if value_at(left, "x") < a < value_at(right, "x") and
+                  value_at(bottom, "y") < b < value_at(top, "y")]
         if len(inside) == 1:
             drawn[inside[0]] = (int(red), int(green), int(blue))
     for point, value in cells.items():
@@ -186,76 +188,41 @@ faults += compare("failed.csv", x, y, z, where, "median", "least")
 demand("failed" in cells_of("failed.csv", x, y, z, where, "median", "least").values(), "no cell has failed")
 demand("run failed" in read("map.svg"), "no mark of a failed run")
 
-# What is not valid.
+
+# What is not valid; more of it stands in command_lines.txt.
 def rejected(text, *words, code=2, **more):
-    (folder / "none.svg").unlink(missing_ok=True)
     said = call("map", *words, code=code, **more)
     demand(text in said and not (folder / "none.svg").exists(), f"{words}: {said}")
+    return said
 
 
 usual = ["map.csv", "--x", x, "--y", y, "--z", z, "--where", "x0=5", "-o", "none.svg"]
-
-
-def instead(option, value):
-    words = list(usual)
-    words[words.index(option) + 1] = value
-    return words
-
-
-rejected('--z: must be a quantity of the table: time_to_amplitude_0.5, lowest_amplitude_above_loss_0.09, '
-         'amplitude_of_largest_loss_factor or impacts; got "impact", did you mean impacts?', *instead("--z", "impact"))
-rejected('--x: must be a number of the table\'s grid: restitution, mass_ratio or x0; got "damping_ratio"', *instead("--x", "damping_ratio"))
-rejected("--y: must be another number than --x", *instead("--y", x))
-rejected("--where: must be given for x0, which has 2 values: --where x0=2", *usual[:7], "-o", "none.svg")
-rejected('--where: must give x0 one of its values: 2, 5; got "x0=3"', *instead("--where", "x0=3"))
-said = call("map", *instead("--where", "x0=3"), code=2)
+said = rejected('--where: must give x0 one of its values: 2, 5; got "x0=3"', *usual[:8], "x0=3", *usual[9:])
 demand("must be given" not in said, f"a value that is none of x0's is rejected twice: {said}")
-rejected('--where: must give x0 once, got "x0=2"', *usual, "--where", "x0=2")
-rejected("--where: must not fix mass_ratio, which is an axis of the map", *usual, "--where", "mass_ratio=0.02")
-rejected("--best: must be given: which values of amplitude_of_largest_loss_factor are the worst?",
-         *instead("--z", "amplitude_of_largest_loss_factor"), "--statistic", "worst")
-rejected('--output: must end in .svg for SVG, got "none.png"', *usual[:-1], "none.png")
-rejected("TABLE: must be given", "-o", "none.svg")
 rejected("plan.json.json: cannot be read", "plan.json", *usual[1:], code=5)
-altered = "\n".join(lines).replace(rows[3][column], rows[4][column]) + "\n"
-write("altered.csv", altered)
+rejected("gnuplot: cannot be found in PATH", *usual, code=5, env=dict(os.environ, PATH=str(folder)))
+write("altered.csv", "\n".join(lines).replace(rows[3][column], rows[4][column]) + "\n")
 shutil.copy(folder / "map.csv.json", folder / "altered.csv.json")
 rejected("altered.csv: is not the table that altered.csv.json describes: its length or SHA-256 is another", "altered.csv", *usual[1:], code=3)
 demand("altered.csv: is not the table" in call("check", "sweep", "altered.csv", code=3), "check says nothing of a table that was altered")
-demand("map.csv: valid" in call("check", "sweep", "map.csv"), "check does not allow a table as it was written")
-other = read("map.csv.json")
 write("altered.csv", "\n".join(lines) + "\n")
-write("altered.csv.json", other.replace('"seed": 3', '"seed": 4'))
+write("altered.csv.json", read("map.csv.json").replace('"seed": 3', '"seed": 4'))
 rejected("altered.csv.json", "altered.csv", *usual[1:], code=3)
-one = dict(square, grid=[{"number": "restitution", "values": [0.5]}, {"number": "mass_ratio", "values": [0.02, 0.04]},
-                         {"number": "w0", "values": [0, 0.001]}], quantities=["time_to_amplitude=5", "loss_factor_at=90", "time_to_amplitude=7"])
-write("one.json", one)
-call("sweep", "one.json", "-o", "one.csv")
-rejected("--x: must have at least two values, restitution has one: 0.5", "one.csv", "--x", x, "--y", y, "--z", "time_to_amplitude=5", "-o", "none.svg")
-rejected("one.csv: has no point with a value of loss_factor_at_90", "one.csv", "--x", y, "--y", "w0", "--z", "loss_factor_at=90", "-o", "none.svg", code=3)
-rejected("one.csv: has only one value of time_to_amplitude_7, 0", "one.csv", "--x", y, "--y", "w0", "--z", "time_to_amplitude=7", "-o", "none.svg", code=3)
 # A value of the grid as one writes it: the second of four between 0 and 0.3 is 0.09999999999999999.
-steps = dict(square, grid=square["grid"] + [{"number": "y0", "from": 0, "to": 0.3, "count": 4}])
-write("steps.json", steps)
+write("steps.json", dict(square, grid=square["grid"] + [{"number": "y0", "from": 0, "to": 0.3, "count": 4}]))
 call("sweep", "steps.json", "-o", "steps.csv")
 written, meant = (drawn("steps.csv", x, y, z, "--where", f"y0={value}") for value in ("0.1", "0.09999999999999999"))
 demand(written == meant, "0.1 and 0.09999999999999999 are not one value of the grid")
 rejected('--where: must give y0 one of its values', "steps.csv", "--x", x, "--y", y, "--z", z, "--where", "y0=0.1000001", "-o", "none.svg")
-rejected("gnuplot: cannot be found in PATH", *usual, code=5, env=dict(os.environ, PATH=str(folder)))
 
 # The lines of the regimes lie where their formulas say: M15.8.
-def points_of(svg, axes):
-    """Of the dashed lines in vermillion, in values of the axes."""
-    height = float(re.search(r'<svg[^>]*? height="(\d+)"', svg)[1])
-    lines = re.findall(r"<path stroke='rgb\(213,  94,   0\)'[^>]*?stroke-dasharray='([^']*)'[^>]*? d='([^']*)'", svg)
+def lines_of(svg):
+    """The dashed lines in vermillion, in values of the axes."""
+    value_at, height, axes = measured(svg)
     found = []
-    for dash, path in lines:
+    for path in re.findall(r"<path stroke='rgb\(213,  94,   0\)'[^>]*?stroke-dasharray='[^']*'[^>]*? d='([^']*)'", svg):
         pixels = [(float(a), height - float(b)) for a, b in re.findall(r"([\d.]+),([\d.]+)", path)]
-        def value(pixel, name):
-            _, low, high, from_pixel, to_pixel = axes[name]
-            part = (pixel - from_pixel) / (to_pixel - from_pixel)
-            return low * (high / low) ** part if name in axes["log"] else low + (high - low) * part
-        found.append([(value(a, "x"), value(b, "y")) for a, b in pixels if a <= axes["x"][4] + 1e-6 and axes["y"][3] <= b])
+        found.append([(value_at(a, "x"), value_at(b, "y")) for a, b in pixels if a <= axes["x"][4] + 1e-6 and axes["y"][3] <= b])
     return [each for each in found if len(each) > 2]
 
 
@@ -266,8 +233,7 @@ write("limits.json", limits)
 call("sweep", "limits.json", "-o", "limits.csv")
 call("map", "limits.csv", "--x", "restitution", "--y", "x0", "--z", "impacts", "-o", "limits.svg")
 svg = read("limits.svg")
-axes = json.loads(re.search(r"<metadata>(.*)</metadata>", svg)[1])["axes"][0]
-lines = points_of(svg, axes)
+lines = lines_of(svg)
 demand(len(lines) == 2, f"{len(lines)} lines of regimes")
 
 
@@ -284,8 +250,7 @@ for e, known in ((0.4, 2.05), (0.6, 5.23)):
 demand("impacts fail below it" in svg and "no bounce-down below it" in svg, "the sides of the lines are not told")
 call("map", "limits.csv", "--x", "x0", "--y", "restitution", "--z", "time_to_amplitude_0.2", "-o", "limits.svg")
 svg = read("limits.svg")
-axes = json.loads(re.search(r"<metadata>(.*)</metadata>", svg)[1])["axes"][0]
-lines = points_of(svg, axes)
+lines = lines_of(svg)
 demand(len(lines) == 1 and all(abs(fold(e) / 0.2 - 1) < 0.01 for _, e in lines[0]), f"asked at 0.2 impacts fail at {lines}")
 
 finish()

@@ -1,13 +1,10 @@
 #!/usr/bin/env python3
 """examples/cluster/parallel makes the table that one process makes, on this machine and on two others, one of which dies.
 
-    parallel.py PROGRAM SOURCE FOLDER        FOLDER, made anew, is for the files
-
 The other machines are folders: instead of ssh a script runs here, in such a folder, what ssh would run there.
 Exit code 1: faults, or GNU parallel or rsync is not here.
 """
 import contextlib
-import json
 import os
 import pathlib
 import shutil
@@ -16,7 +13,8 @@ import subprocess
 import sys
 import time
 
-program, source, folder = (pathlib.Path(each).resolve() for each in sys.argv[1:4])
+from trial import demand, finish, folder, program, run, source, write
+
 missing = [each for each in ("parallel", "rsync") if not shutil.which(each)]
 if missing:
     sys.exit(f"{' and '.join(missing)} missing: make deps-cluster cluster-check")
@@ -33,22 +31,15 @@ exec sh -c "$*"
 plan = {"schema": "impact-damper/plan/1", "scene_file": "scene.json",
         "grid": [{"number": "restitution", "from": 0.4, "to": 0.8, "count": 1000}],
         "quantities": ["time_to_amplitude=0.6", "impact_energy_share"]}
-shutil.rmtree(folder, ignore_errors=True)
 work, machines = folder / "work", folder / "machines"
 for each in (work, machines / "near", machines / "far", folder / "home"):
     each.mkdir(parents=True)
-(work / "plan.json").write_text(json.dumps(plan))
-(work / "scene.json").write_text(json.dumps({"mass_ratio": 0.02, "until_amplitude": 0.03}))
+write("work/plan.json", plan)
+write("work/scene.json", {"mass_ratio": 0.02, "until_amplitude": 0.03})
 (folder / "ssh").write_text(SSH)
 (folder / "ssh").chmod(0o755)
 environment = {**os.environ, "IMPACT_DAMPER": str(program), "MACHINES": str(machines), "PARALLEL_SSH": str(folder / "ssh"),
                "HOME": str(folder / "home"), "PARALLEL_HOME": str(folder / "home")}
-faults = []
-
-
-def demand(holds, what):
-    if not holds:
-        faults.append(what)
 
 
 def start(table, on):
@@ -92,7 +83,7 @@ def lose(machine):
             os.kill(pid, signal.SIGKILL)
 
 
-subprocess.run([program, "sweep", "plan.json", "-o", "serial.csv"], cwd=work, check=True, stderr=subprocess.DEVNULL)
+run(program, "sweep", "plan.json", "-o", "serial.csv", cwd=work)
 
 end(start("here.csv", ["2/:"]), 0, "here.csv is written")
 demand_equal("here.csv")
@@ -112,8 +103,7 @@ end(start("again.csv", ["2/near"]), 0, "again.csv is written")
 demand_equal("again.csv")
 
 # Another plan is not mixed with the parts that are there.
-(work / "plan.json").write_text(json.dumps({**plan, "quantities": ["impacts"]}))
+write("work/plan.json", {**plan, "quantities": ["impacts"]})
 end(start("again.csv", ["2/near"]), 2, "holds runs of another plan, part or program")
 
-print("\n".join(faults + [f"{len(faults)} faults"]))
-sys.exit(1 if faults else 0)
+finish()

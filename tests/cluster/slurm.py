@@ -2,8 +2,6 @@
 """Sweeps by the scripts of examples/cluster/ on a real Slurm that is started here: a task is killed and requeued, a node drained, another
 one dies, a task nears its time limit, and the table has the bytes that one machine gives. Faulty parts are not merged.
 
-    slurm.py PROGRAM SOURCE FOLDER        FOLDER, made anew, is for the files
-
 Slurm and munge are Debian's, with a configuration, a key, folders and free ports of their own; without the key nobody is served.
 All that was started is ended with this process. Needs no rights. Exit code 1: faults, or no Slurm is here.
 """
@@ -11,7 +9,6 @@ import collections
 import contextlib
 import ctypes
 import getpass
-import json
 import os
 import pathlib
 import re
@@ -23,11 +20,13 @@ import sys
 import tempfile
 import time
 
-program, source, folder = (pathlib.Path(each).resolve() for each in sys.argv[1:4])
+from processes import adopt_orphans, descendants, end_all, kill
+from trial import folder, program, source, write
+
 begin, parts, nodes = time.monotonic(), 8, ("node1", "node2")
 home = pathlib.Path(tempfile.mkdtemp(prefix="slurm-"))  # Slurm's: names of its sockets must be short
 libc = ctypes.CDLL(None)
-pr_set_pdeathsig, pr_set_child_subreaper = 1, 36
+pr_set_pdeathsig = 1
 
 
 def say(what):
@@ -56,35 +55,6 @@ def call(*words, code=0):
 
 
 # What was started: daemons, and what they start, also where the process between has ended.
-
-def descendants(ancestor=os.getpid()):
-    children = {}
-    for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
-        with contextlib.suppress(OSError):
-            children.setdefault(int(stat.read_text().rpartition(")")[2].split()[1]), []).append(int(stat.parent.name))
-    found = [ancestor]
-    for pid in found:
-        found += children.get(pid, [])
-    return found[1:]
-
-
-def kill(pids):
-    for pid in pids:
-        with contextlib.suppress(ProcessLookupError):
-            os.kill(pid, signal.SIGKILL)
-
-
-def end_all():
-    for _ in range(200):
-        kill(descendants())
-        with contextlib.suppress(ChildProcessError):
-            while os.waitpid(-1, os.WNOHANG)[0]:
-                pass
-        if not descendants():
-            return
-        time.sleep(0.05)
-    print(f"not ended: processes {descendants()}", file=sys.stderr)
-
 
 def start(name, *words):
     with open(folder / f"{name}.out", "w", encoding="utf-8") as out:
@@ -276,16 +246,14 @@ def main():
     missing = [each for each in ("munged", "slurmctld", "slurmd", "sbatch") if not shutil.which(each)]
     if missing:
         sys.exit(f"{' and '.join(missing)} missing: make deps-cluster cluster-check")
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
     plan = {"schema": "impact-damper/plan/1", "scene": {"mass_ratio": 0.02, "until_amplitude": 0.03},
             "grid": [{"number": "restitution", "from": 0.4, "to": 0.8, "count": 10}],
             "samples": {"count": 800, "seed": 1, "numbers": [{"number": "mass_ratio", "half_width": 0.1, "relative": True}]},
             "quantities": ["time_to_amplitude=0.6", "impacts", "impact_energy_share"]}
-    (folder / "plan.json").write_text(json.dumps(plan))
+    write("plan.json", plan)
     call(program, "sweep", "plan.json", "-o", "serial.csv")
     say("serial.csv, by one process")
-    libc.prctl(pr_set_child_subreaper, 1)
+    adopt_orphans()
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, lambda *_: sys.exit(130))
     try:

@@ -2,7 +2,7 @@
 files of this folder, the project's own, a fresh run of each engine, and whatever becomes of the allowed ones of this folder
 if one value after the other is changed, left out or doubled.
 
-    agree.py PROGRAM SOURCE FOLDER [NTH]      FOLDER is for the changed files; about every NTH is tried, drawn with a fixed seed
+    agree.py PROGRAM FOLDER [NTH]      about every NTH changed file is tried, drawn with a fixed seed
 
 The schemas take nearly all the time, in Python; so a document is kept small, and all processors have their share.
 """
@@ -10,83 +10,57 @@ import json
 import math
 import multiprocessing
 import os
-import pathlib
 import random
 import re
 import shutil
-import subprocess
 import sys
 
-try:
-    from jsonschema import Draft7Validator, RefResolver
-except ImportError:
-    print("skipped: Python's jsonschema is not here (Debian: python3-jsonschema)")
-    sys.exit(77)
+import trial
+from packed_files import unpack
+from trial import call, demand, faults, finish, folder, run, source, validator
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from packed_files import unpack  # noqa: E402
-
-program, source, folder = sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
-nth = int(sys.argv[4]) if len(sys.argv) > 4 else 1
+nth = int(trial.words[0]) if trial.words else 1
 KINDS = ("scene", "run", "plan", "catalogue", "claims", "manifest")
 
-# What the program says, as a regular expression, of files that a schema cannot reject: why it cannot.
+# Why a schema cannot reject a file, and what the program says of such, as regular expressions.
 BEYOND_SCHEMAS = {
-    "duplicate key,": "It sees objects, in which each key stands once.",
-    r"too long, allowed are \d+ bytes": "It sees no bytes.",
-    r"too many objects, arrays, keys and texts, allowed are \d+$": "It counts only within one array or object.",
-    "written without point or exponent": "To it 3.0 is the integer 3.",
-    "must be the digest of the content": "It sees no bytes.",
-    "contradicts the rest of the run": "It compares no numbers.",
-    "must be as long as the section's first column": "It compares no lengths.",
-    "must not be below the one before it": "It compares no elements.",
-    "must not be before its begin": "It compares no elements.",
-    "must be below that of the window before": "It compares no elements.",
-    'must differ from "from"': "It compares no values.",
-    "must be two different numbers": "It compares no elements.",
-    r"must give at most \d+ points": "It multiplies nothing.",
-    r"/(grid|samples/numbers)/\d+/(from|to|values/\d+): must be a number .*, got -?\d": "A range that depends on another part of the file.",
-    "must be > from,": "It compares no values.",
-    "must be > 0 for a logarithmic scale": "It compares no values.",
-    "/grid: a number that varies must be given": "One of two lists must not be empty.",
-    "must name each number once": "It compares no elements.",
-    r"must make at most \d+ runs in all": "It multiplies nothing.",
-    "/frequencies: missing, the range must be given": "It does not know what stands elsewhere in the file.",
-    "must be exact or restitution for quantities of motions under a force": "It does not know what stands elsewhere in the file.",
-    "must be a response of this catalogue": "It does not know what stands elsewhere in the file.",
-    'must be (a sweep|a basin) .*, got "': "It does not know what stands elsewhere in the file.",
-    "must come after a sweep with its force": "It does not know what stands elsewhere in the file.",
-    r"must be \[least, most\].* got \[-?[0-9.e+-]+, -?[0-9.e+-]+\]$": "It compares no elements.",
-    r"must be two amplitudes, the lower first, got \S+ and": "It compares no elements.",
-    'must be above "from"': "It compares no values.",
-    "/digits: must ascend": "It compares no elements.",
-    "/(words|explanation|evidence): (must name|must have|must show|has a)": "It reads no braces and does not know what stands elsewhere in the file.",
-    "must be the sum of its parts": "It does not add.",
-    r"/units/\w+: must be (length_m|mass_kg|energy_J) (divided by|times)": "It multiplies no numbers.",
-    "must hold a loss for each of the": "It compares no lengths.",
-    "with the restitution engine, whose walls are rigid, got": "A range that depends on another part of the file.",
-    ", its clearance, as walls are rigid, got": "A range that depends on another part of the file.",
-    r"/(half_cycles|energy|history)/dampers: must be as many as in the scene, \d+, got": "It compares no lengths.",
-    r"/damper/\d+: must be a whole number >= 1 and <= \d+, got ([1-9]\d{0,2}|1000)(\.0)?$": "A range that depends on another part of the file.",
-    r"/engine/(time_step|large_step): must be (<= |> \S+, the time step)": "A limit that is computed.",
-    "must be given once(, got| among)": "It holds elements apart only as a whole.",
-    "must draw (a scene|runs) of this catalogue": "What is named elsewhere in the file.",
-    "must be a scene of this catalogue": "What is named elsewhere in the file.",
-    "must differ from the scripts before it": "It holds elements apart only as a whole.",
-    "in the (scene's record, which|record of run)": "What is named elsewhere in the file.",
-    ": made dimensionless, as [][.a-z0-9_]+, must be": "It divides no masses, lengths or times.",
-    "must be the amplitude of a history window": "What is named elsewhere in the file.",
-    '/stamp: must be "[0-9a-f]{8}': "It takes no values from elsewhere in the file.",
+    "It sees objects, in which each key stands once.": ["duplicate key,"],
+    "It sees no bytes.": [r"too long, allowed are \d+ bytes", "must be the digest of the content"],
+    "It counts only within one array or object.": [r"too many objects, arrays, keys and texts, allowed are \d+$"],
+    "To it 3.0 is the integer 3.": ["written without point or exponent"],
+    "It compares no numbers.": ["contradicts the rest of the run"],
+    "It compares no lengths.": [
+        "must be as long as the section's first column", "must hold a loss for each of the",
+        r"/(half_cycles|energy|history)/dampers: must be as many as in the scene, \d+, got"],
+    "It compares no elements.": [
+        "must not be below the one before it", "must not be before its begin", "must be below that of the window before",
+        "must be two different numbers", "must name each number once",
+        r"must be \[least, most\].* got \[-?[0-9.e+-]+, -?[0-9.e+-]+\]$",
+        r"must be two amplitudes, the lower first, got \S+ and", "/digits: must ascend"],
+    "It compares no values.": [
+        'must differ from "from"', "must be > from,", "must be > 0 for a logarithmic scale", 'must be above "from"'],
+    "It multiplies nothing.": [r"must give at most \d+ points", r"must make at most \d+ runs in all"],
+    "A range that depends on another part of the file.": [
+        r"/(grid|samples/numbers)/\d+/(from|to|values/\d+): must be a number .*, got -?\d",
+        "with the restitution engine, whose walls are rigid, got", ", its clearance, as walls are rigid, got",
+        r"/damper/\d+: must be a whole number >= 1 and <= \d+, got ([1-9]\d{0,2}|1000)(\.0)?$"],
+    "One of two lists must not be empty.": ["/grid: a number that varies must be given"],
+    "It does not know what stands elsewhere in the file.": [
+        "/frequencies: missing, the range must be given",
+        "must be exact or restitution for quantities of motions under a force", "must be a response of this catalogue",
+        'must be (a sweep|a basin) .*, got "', "must come after a sweep with its force"],
+    "It reads no braces and does not know what stands elsewhere in the file.": [
+        "/(words|explanation|evidence): (must name|must have|must show|has a)"],
+    "It does not add.": ["must be the sum of its parts"],
+    "It multiplies no numbers.": [r"/units/\w+: must be (length_m|mass_kg|energy_J) (divided by|times)"],
+    "A limit that is computed.": [r"/engine/(time_step|large_step): must be (<= |> \S+, the time step)"],
+    "It holds elements apart only as a whole.": ["must be given once(, got| among)", "must differ from the scripts before it"],
+    "What is named elsewhere in the file.": [
+        "must draw (a scene|runs) of this catalogue", "must be a scene of this catalogue",
+        "in the (scene's record, which|record of run)", "must be the amplitude of a history window"],
+    "It divides no masses, lengths or times.": [": made dimensionless, as [][.a-z0-9_]+, must be"],
+    "It takes no values from elsewhere in the file.": ['/stamp: must be "[0-9a-f]{8}'],
 }
-
-
-def validator(kind):
-    path = source / "data/schema" / f"{kind}.schema.json"
-    schema = json.loads(path.read_text(encoding="utf-8"))
-    Draft7Validator.check_schema(schema)
-    return Draft7Validator(schema, resolver=RefResolver(path.as_uri(), schema))
-
-
 VALIDATORS = {kind: validator(kind) for kind in KINDS}
 
 
@@ -108,9 +82,8 @@ def complaints(kind, files):
     said = {str(file): [] for file in files}
     names = list(said)
     for first in range(0, len(names), 1000):
-        done = subprocess.run([program, "check", kind, *names[first : first + 1000]], capture_output=True, text=True)
-        if done.returncode not in (0, 3):
-            sys.exit(f"check {kind}: exit code {done.returncode}: {done.stderr}")
+        done = run(trial.program, "check", kind, *names[first : first + 1000], code=None)
+        demand(done.returncode in (0, 3), f"check {kind}: exit code {done.returncode}: {done.stderr}")
         for line in done.stderr.splitlines():
             if ": warning: " in line:
                 continue
@@ -194,10 +167,7 @@ def documents(file):
 
 
 def main():
-    if folder.exists():
-        shutil.rmtree(folder)
-    (folder / "fresh").mkdir(parents=True)
-
+    (folder / "fresh").mkdir()
     corpus = {}  # of each file what the program says of it; of an allowed one nothing
     for kind in KINDS:
         notes = unpack(source / f"tests/corpus/{kind}.packed", folder / "corpus" / kind)
@@ -211,12 +181,12 @@ def main():
            "manifest": [file for file in [source / "data/reference/manifest.json"] if file.exists()]}
     for engine in ("exact", "restitution", "cem"):
         fresh = folder / "fresh" / f"{engine}.json"
-        subprocess.run([program, "run", "--until-time", "20", "--engine", engine, "--force-amplitude", "0.1", "--record",
-                        "half_cycles,impacts,contacts,energy,history", "--history", "0:20:11", "-o", fresh], check=True)
+        call("run", "--until-time", "20", "--engine", engine, "--force-amplitude", "0.1", "--record",
+             "half_cycles,impacts,contacts,energy,history", "--history", "0:20:11", "-o", fresh)
         own["run"].append(fresh)
     several = folder / "fresh" / "several.json"
-    subprocess.run([program, "run", "--scene", folder / "corpus/scene/dampers_every_key.json", "--engine", "restitution", "--record",
-                    "half_cycles,impacts,contacts,energy,history", "--history", "0:5:11", "-o", several], check=True)
+    call("run", "--scene", folder / "corpus/scene/dampers_every_key.json", "--engine", "restitution", "--record",
+         "half_cycles,impacts,contacts,energy,history", "--history", "0:5:11", "-o", several)
     own["run"].append(several)
 
     changed = 0
@@ -234,8 +204,8 @@ def main():
             changed += 1
     print(f"{len(corpus)} files of the corpus, {changed} changed ones", flush=True)
 
-    beyond = [re.compile(each) for each in BEYOND_SCHEMAS]
-    faults, exceptions = [], 0
+    beyond = [re.compile(each) for said in BEYOND_SCHEMAS.values() for each in said]
+    exceptions = 0
     pairs = [(kind, file) for kind in KINDS for file in files[kind] + own[kind]]
     with multiprocessing.Pool(os.cpu_count()) as processes:
         allowed = dict(zip(pairs, processes.starmap(schema_allows, pairs, chunksize=100)))
@@ -244,7 +214,7 @@ def main():
         for file in own[kind]:
             if not allowed[kind, file]:
                 faults.append(f"{file}: rejected by the {kind} schema")
-            faults += [f"rejected: {line}" for line in said[str(file)]]
+            faults.extend(f"rejected: {line}" for line in said[str(file)])
         for file in files[kind]:
             lines = said[str(file)]
             beyond_schemas = all(any(each.search(line) for each in beyond) for line in lines)
@@ -252,12 +222,10 @@ def main():
             if allowed[kind, file] != beyond_schemas:
                 verdict = "allows" if allowed[kind, file] else "rejects"
                 faults.append(f"the {kind} schema {verdict} {file}, of which the program says: {lines}")
-    print(f"{exceptions} rejected for what no schema can express, {len(faults)} faults")
-    for fault in faults[:20]:
-        print(fault[:600])
+    del faults[20:]
     if not faults:
         shutil.rmtree(folder)
-    sys.exit(bool(faults))
+    finish(f"{exceptions} rejected for what no schema can express, ")
 
 
 main()

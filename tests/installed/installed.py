@@ -1,42 +1,35 @@
-#!/usr/bin/env python3
 """The program as `make install` puts it in place finds its files, from any folder; its man page and completions name
 every option.
 
-    installed.py PREFIX PROGRAM SOURCE RUNS FOLDER
+    installed.py PROGRAM FOLDER BUILT RUNS
 
-PREFIX is where it was installed, under a DESTDIR; PROGRAM the same program in its build folder; RUNS has the catalogue's
-runs. The tests run in FOLDER.
+PROGRAM is where it was installed, under a DESTDIR; BUILT the same program in its build folder; RUNS has the catalogue's runs.
 """
 import json
 import os
 import re
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
-PREFIX, BUILT, SOURCE, RUNS, FOLDER = (Path(each).resolve() for each in sys.argv[1:6])
-PROGRAM = PREFIX / "bin/impact-damper"
+import trial
+from trial import demand, finish, folder, program, skip, source, write
+
+PREFIX = program.parents[1]
+BUILT, RUNS = (Path(each).resolve() for each in trial.words)
 SHARE = PREFIX / "share/impact-damper"
 
 
-def run(*command, folder=FOLDER, code=0, **options) -> str:
+def run(*command, folder=folder, code=0, **options) -> str:
     """Standard output; with another exit code than 0 expected, standard error."""
-    done = subprocess.run([str(each) for each in command], cwd=folder, capture_output=True, text=True, **options)
+    done = trial.run(*command, code=code, cwd=folder, **options)
     # Progress is told where it takes long.
     said = re.sub(r"^(compare|design|report|response|run|sweep|verify): .*\n", "", done.stderr, flags=re.M)
-    if done.returncode != code or code == 0 and said:
-        sys.exit(f"{command}: exit code {done.returncode}: {done.stderr}{done.stdout}")
+    demand(code or not said, f"{command}: says {said}")
     return done.stderr if code else done.stdout
 
 
-def demand(holds: bool, what):
-    if not holds:
-        sys.exit(f"installed.py: {what}")
-
-
 def same_as_in_the_source_folder(*arguments):
-    demand(run(PROGRAM, *arguments) == run(BUILT, *arguments, folder=SOURCE), f"{arguments} differs")
+    demand(run(program, *arguments) == run(BUILT, *arguments, folder=source), f"{arguments} differs")
 
 
 def finds_its_files():
@@ -46,9 +39,9 @@ def finds_its_files():
     catalogue = json.loads((SHARE / "figures/catalogue.json").read_text())
     files = [file for name in [each["scene"] for each in catalogue["scenes"]] + [each["name"] for each in catalogue["runs"]]
              for file in (RUNS / f"{name}.json", *sorted((RUNS / f"{name}.members").iterdir()))]
-    demand(run(PROGRAM, "check", "run", *files).count("\n") == len(files) ==
+    demand(run(program, "check", "run", *files).count("\n") == len(files) ==
            (len(catalogue["scenes"]) + len(catalogue["runs"])) * catalogue["members"], "check")
-    done = subprocess.run([PROGRAM, "verify", "--runs", RUNS, "--members", "2"], cwd=FOLDER, capture_output=True, text=True)
+    done = trial.run(program, "verify", "--runs", RUNS, "--members", "2", code=None)
     claims = [claim for claim in json.loads((SHARE / "data/claims.json").read_text())["claims"] if "source" not in claim]
     demand(done.returncode in (0, 1) and f"\nengine exact, {len(claims)} claims of the paper: " in done.stdout,
            done.stderr + done.stdout)
@@ -62,46 +55,46 @@ def finds_what_is_named():
                       ["response", "lyapunov", "--scene", wind, "--periods", "10", "--discard", "0"],
                       ["design", "--scene", mast, "--dampers", "1", "--to", "10"], ["figures", "figures/catalogue.json"],
                       ["series", "--catalogue", "figures/catalogue.json", "--scenes", "data/scenes", "--runs", RUNS, "--figure", "7"]):
-        found = run(PROGRAM, *arguments).replace(f"{SHARE}/", "")
-        demand(found == run(BUILT, *arguments, folder=SOURCE), f"{arguments} differs")
+        found = run(program, *arguments).replace(f"{SHARE}/", "")
+        demand(found == run(BUILT, *arguments, folder=source), f"{arguments} differs")
     demand("data/examples/mast.csv: cannot be read: No such file" in
-           run(PROGRAM, "compare", "--scene", mast, "--measured", "data/examples/mast.csv", code=5), "what is nowhere has its name")
-    (FOLDER / "plan.json").write_text((SOURCE / plan).read_text().replace('"mast.json"', f'"{mast}"'))
-    demand(run(PROGRAM, "check", "plan", "plan.json") == "plan.json: valid\n", "a plan that names a scene")
+           run(program, "compare", "--scene", mast, "--measured", "data/examples/mast.csv", code=5), "what is nowhere has its name")
+    write("plan.json", (source / plan).read_text().replace('"mast.json"', f'"{mast}"'))
+    demand(run(program, "check", "plan", "plan.json") == "plan.json: valid\n", "a plan that names a scene")
 
 
 def the_current_folder_comes_first():
-    own = FOLDER / "own"
+    own = folder / "own"
     (own / "data/scenes").mkdir(parents=True)
     (own / "data/scenes/mine.json").write_text('{"until_time": 5}')
     (own / "data/examples").mkdir()
     (own / "data/examples/mast.json").write_text('{"until_time": 5, "x0": 1.25}')
-    demand('"x0": 1.25,' in run(PROGRAM, "run", "--scene", "data/examples/mast.json", folder=own), "the current folder's own mast")
-    run(PROGRAM, "check", "scene", "examples/mast.json", folder=own, code=5)
-    lines = run(PROGRAM, "scenes", folder=own).splitlines()
+    demand('"x0": 1.25,' in run(program, "run", "--scene", "data/examples/mast.json", folder=own), "the current folder's own mast")
+    run(program, "check", "scene", "examples/mast.json", folder=own, code=5)
+    lines = run(program, "scenes", folder=own).splitlines()
     demand(len(lines) == 2 and lines[1].startswith("mine "), lines)
-    demand("nu2-e06" in run(PROGRAM, "figures", folder=own), "what the current folder lacks is found with the program")
+    demand("nu2-e06" in run(program, "figures", folder=own), "what the current folder lacks is found with the program")
 
 
 def a_link_and_a_copy():
-    (FOLDER / "link").symlink_to(PROGRAM)
-    demand("nu2-e06" in run(FOLDER / "link", "scenes"), "a link to the program")
-    alone = FOLDER / "alone/bin/impact-damper"
+    (folder / "link").symlink_to(program)
+    demand("nu2-e06" in run(folder / "link", "scenes"), "a link to the program")
+    alone = folder / "alone/bin/impact-damper"
     alone.parent.mkdir(parents=True)
-    shutil.copy(PROGRAM, alone)
+    shutil.copy(program, alone)
     demand(run(alone, "figures", code=5) == "figures/catalogue.json: cannot be read: No such file or directory\n", "alone")
     demand("@misc{" in run(alone, "cite"), "cite needs no file")
     demand("data/reference/manifest.json: cannot be read" in run(alone, "cite", "--figure", "8", code=5), "--figure does")
 
 
 def commands() -> list:
-    text = run(PROGRAM, "--help")
+    text = run(program, "--help")
     return re.findall(r"^  (\w+) ", text[text.index("Subcommands:"):], re.M)
 
 
 def options(command: str) -> set:
     """By --help: -o,--output FILE is two."""
-    return {name for line in re.findall(r"^  (-\S+)", run(PROGRAM, command, "--help"), re.M) for name in line.split(",")}
+    return {name for line in re.findall(r"^  (-\S+)", run(program, command, "--help"), re.M) for name in line.split(",")}
 
 
 def pages_name_every_option():
@@ -113,7 +106,7 @@ def pages_name_every_option():
         demand(section is not None, f"no section on {command}")
         named = set(re.findall(r"(?<![\w-])--?\w[\w-]*", section[1]))
         demand(options(command) <= named, f"{command}: the man page lacks {options(command) - named}")
-    demand(PROGRAM.name in page[:page.index("SYNOPSIS")], page[:300])
+    demand(program.name in page[:page.index("SYNOPSIS")], page[:300])
 
 
 def headers_include_what_is_installed():
@@ -133,7 +126,7 @@ def bash_completes(*words) -> set:
 
 def fish_completes(line: str) -> set:
     script = 'source $argv[1]; complete -C "$argv[2]"'
-    environment = dict(os.environ, HOME=str(FOLDER), XDG_CONFIG_HOME=str(FOLDER / "config"))
+    environment = dict(os.environ, HOME=str(folder), XDG_CONFIG_HOME=str(folder / "config"))
     return {each.split("\t")[0] for each in run("fish", "-N", "-c", script, PREFIX / "share/fish/vendor_completions.d/impact-damper.fish",
                                                 line, env=environment).splitlines()}
 
@@ -149,7 +142,7 @@ sleep 1
 while zpty -r -t shell out; do print -rn -- $out; done
 zpty -d shell
 """
-    environment = dict(os.environ, HOME=str(FOLDER), TERM="dumb", COLUMNS="200", LINES="100")
+    environment = dict(os.environ, HOME=str(folder), TERM="dumb", COLUMNS="200", LINES="100")
     return run("zsh", "-f", "-c", script, "zsh", PREFIX / "share/zsh/site-functions", line, env=environment)
 
 
@@ -177,16 +170,20 @@ def shells_complete_every_option():
     demand(bash_completes("run", "--scene", "") == set(), "bash: file names are left to readline")
     demand(fish_completes("impact-damper run --engine ") == engines, fish_completes("impact-damper run --engine "))
     if not terminals_can_be_made():
-        print("not tried: completions in zsh, for want of a pseudo-terminal, as in a chroot without /dev/pts")
-        sys.exit(77)
+        unless_faulty("completions in zsh, for want of a pseudo-terminal, as in a chroot without /dev/pts")
     screen = zsh_completes("impact-damper run --engine ")
     demand(all(engine in screen for engine in engines), screen)
     screen = zsh_completes("impact-damper verify --")
     demand(all(name in screen for name in all_options["verify"] if name.startswith("--")), screen)
 
 
-shutil.rmtree(FOLDER, ignore_errors=True)
-FOLDER.mkdir(parents=True)
+def unless_faulty(why):
+    """Ends the script: this cannot be tried here."""
+    if trial.faults:
+        finish()
+    skip(why)
+
+
 finds_its_files()
 finds_what_is_named()
 the_current_folder_comes_first()
@@ -195,6 +192,6 @@ headers_include_what_is_installed()
 pages_name_every_option()
 missing = [tool for tool in ("fish", "zsh") if not shutil.which(tool)]
 if missing:
-    print(f"not tried: completions, for want of {missing}: make deps-check")
-    sys.exit(77)
+    unless_faulty(f"completions, for want of {missing}: make deps-check")
 shells_complete_every_option()
+finish()

@@ -1,9 +1,8 @@
-#!/usr/bin/env python3
 """The installed library, used as a stranger uses it: by find_package and by pkg-config, without the source folder.
 
-    library.py PREFIX SOURCE FOLDER COMPILER
+    library.py PROGRAM FOLDER COMPILER
 
-PREFIX is where it was installed, under a DESTDIR: not where it was meant to be, so a path that was written down leads
+PROGRAM is where it was installed, under a DESTDIR: not where it was meant to be, so a path that was written down leads
 nowhere. examples/ must print what stands beside them; an engine that is compiled by the stranger must give the
 program's bytes, also for a processor with fused multiply-add; no compilation may read Eigen or nlohmann-json.
 """
@@ -11,13 +10,12 @@ import itertools
 import os
 import re
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
-PREFIX, SOURCE, FOLDER = (Path(each).resolve() for each in sys.argv[1:4])
-COMPILER = sys.argv[4]
-PROGRAM = PREFIX / "bin/impact-damper"
+import trial
+from trial import call, demand, finish, folder, program, skip, source, words
+
+PREFIX, COMPILER = program.parents[1], words[0]
 QUICK = ["-O1"]
 # With all instructions that this processor has. g++ fuses products with sums from -O2 on, unless the package's options
 # forbid it.
@@ -31,22 +29,17 @@ target_link_libraries(columns PRIVATE impact_damper::impact_damper)
 PRIVATE = re.compile(r"eigen3?/|nlohmann", re.I)
 
 
-def demand(holds: bool, what):
-    if not holds:
-        sys.exit(f"library.py: {what}")
-
-
 def run(*command, **options) -> str:
-    done = subprocess.run([str(each) for each in command], capture_output=True, text=True, **options)
-    demand(done.returncode == 0 and not done.stderr, f"{command}: exit code {done.returncode}: {done.stderr}{done.stdout}")
+    done = trial.run(*command, **options)
+    demand(not done.stderr, f"{command}: {done.stderr}")
     return done.stdout
 
 
 def built(name: str, sources: Path, flags: list) -> Path:
     """A project as its folder alone, configured, built; nothing it was compiled from is another package's."""
-    shutil.copytree(sources, FOLDER / name / "source")
-    build = FOLDER / name / "build"
-    run("cmake", "-S", FOLDER / name / "source", "-B", build, "-G", "Ninja", f"-DCMAKE_CXX_COMPILER={COMPILER}",
+    shutil.copytree(sources, folder / name / "source")
+    build = folder / name / "build"
+    run("cmake", "-S", folder / name / "source", "-B", build, "-G", "Ninja", f"-DCMAKE_CXX_COMPILER={COMPILER}",
         "-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_CXX_FLAGS_RELEASE={' '.join(flags)}", f"-DCMAKE_PREFIX_PATH={PREFIX}",
         "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON")
     run("cmake", "--build", build)
@@ -54,28 +47,28 @@ def built(name: str, sources: Path, flags: list) -> Path:
     demand(str(PREFIX / "include") in commands, f"{name}: not compiled with the installed headers")
     demand(not PRIVATE.search(commands) and not re.search(r"-W[a-z]|-DEIGEN|-I\S*/src\b", commands), commands)
     read = run("ninja", "-C", build, "-t", "deps")
-    demand("impact_damper/run.hpp" in read and not PRIVATE.search(read) and f"{SOURCE}/src" not in read, read)
+    demand("impact_damper/run.hpp" in read and not PRIVATE.search(read) and f"{source}/src" not in read, read)
     return build
 
 
 def the_examples_print_what_stands_beside_them():
-    build = built("examples", SOURCE / "examples", QUICK)
-    sources = sorted((SOURCE / "examples").glob("*.c*"))
+    build = built("examples", source / "examples", QUICK)
+    sources = sorted((source / "examples").glob("*.c*"))
     demand(len(sources) >= 4, sources)
     for name, source in ((file.stem, file) for file in sources):
-        demand(run(build / name) == (SOURCE / f"examples/{name}.txt").read_text(), f"{name} prints\n{run(build / name)}")
+        demand(run(build / name) == (source / f"examples/{name}.txt").read_text(), f"{name} prints\n{run(build / name)}")
         demand(len(source.read_text().splitlines()) <= 40, f"{source} is no short example")
 
 
 def an_engine_compiled_here_gives_the_programs_bytes():
-    project = FOLDER / "own"
+    project = folder / "own"
     project.mkdir()
     (project / "CMakeLists.txt").write_text(STRANGER)
-    shutil.copy(SOURCE / "tests/installed/columns.cpp", project)
+    shutil.copy(source / "tests/installed/columns.cpp", project)
     columns = built("stranger", project, FUSING) / "columns"
-    scenes = [SOURCE / f"tests/same_bits/scenes/{name}.json" for name in ("forced-near-resonance", "dampers-forced")]
+    scenes = [source / f"tests/same_bits/scenes/{name}.json" for name in ("forced-near-resonance", "dampers-forced")]
     for engine, scene in itertools.product(("exact", "restitution", "cem"), scenes):
-        wanted = run(PROGRAM, "run", "--engine", engine, "--scene", scene, "--history", "0:150:301",
+        wanted = call("run", "--engine", engine, "--scene", scene, "--history", "0:150:301",
                      "--record", "half_cycles,impacts,contacts,energy,history")
         demand(len(wanted) > 50000 and run(columns, engine, scene) == wanted, f"{engine}, {scene.name}: not the program's bytes")
 
@@ -85,14 +78,14 @@ def pkg_config_is_enough():
     environment = dict(os.environ, PKG_CONFIG_PATH=str(library))
     flags, libraries = (run("pkg-config", what, "impact_damper", env=environment).split() for what in ("--cflags", "--libs"))
     demand(not PRIVATE.search(" ".join(flags + libraries)), flags + libraries)
-    example, program = FOLDER / "examples/source/observer", FOLDER / "by_pkg_config"
+    example, binary = folder / "examples/source/observer", folder / "by_pkg_config"
     # As README.md says, and with the warnings that somebody might have turned on.
-    run(COMPILER, *QUICK, "-Wall", "-Wextra", "-Werror", f"{example}.cpp", *flags, *libraries, "-o", program)
-    demand(run(program) == example.with_suffix(".txt").read_text(), "by pkg-config the example prints something else")
+    run(COMPILER, *QUICK, "-Wall", "-Wextra", "-Werror", f"{example}.cpp", *flags, *libraries, "-o", binary)
+    demand(run(binary) == example.with_suffix(".txt").read_text(), "by pkg-config the example prints something else")
     # Each public header has all that it includes, and no two of them are at odds.
     headers = sorted(str(file.relative_to(PREFIX / "include")) for file in (PREFIX / "include").rglob("*.h*"))
     demand(len(headers) > 40 and not any("json" in name or "reproduction" in name for name in headers), headers)
-    every = FOLDER / "every_header.cpp"
+    every = folder / "every_header.cpp"
     every.write_text("".join(f'#include "{name}"\n' for name in reversed(headers)))
     run(COMPILER, *flags, "-fsyntax-only", every)
 
@@ -101,17 +94,15 @@ def nothing_names_the_build():
     files = [file for file in PREFIX.rglob("*") if file.suffix in (".cmake", ".pc")]
     demand(len(files) >= 5, files)
     for file in files:
-        named = re.search(rf"{SOURCE}|{PREFIX}|/usr/local|/opt/it", file.read_text())
+        named = re.search(rf"{source}|{PREFIX}|/usr/local|/opt/it", file.read_text())
         demand(not named, f"{file} names {named and named[0]}")
 
 
 missing = [tool for tool in ("ninja", "pkg-config") if not shutil.which(tool)]
 if missing:
-    print(f"not tried, for want of {missing}: make deps-check")
-    sys.exit(77)
-shutil.rmtree(FOLDER, ignore_errors=True)
-FOLDER.mkdir(parents=True)
+    skip(f"for want of {missing}: make deps-check")
 nothing_names_the_build()
 the_examples_print_what_stands_beside_them()
 an_engine_compiled_here_gives_the_programs_bytes()
 pkg_config_is_enough()
+finish()

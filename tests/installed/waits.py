@@ -1,25 +1,20 @@
-#!/usr/bin/env python3
 """.ci/install waits for another apt, says so in one line, and gives up when it must; it installs what the system's apt has,
 and names the rest.
-
-    waits.py SOURCE FOLDER
 
 Runs it with an apt-get, a dpkg-query, an id and a sleep of its own first in PATH: apt-get fails as the real one does
 while another holds the lock, and the time slept is written down instead of spent.
 """
 import os
 import shutil
-import subprocess
-import sys
-from pathlib import Path
 
-SOURCE, FOLDER = Path(sys.argv[1]), Path(sys.argv[2])
+from trial import demand, finish, folder, program, run
+
 LOCKED = "E: Could not get lock /var/lib/apt/lists/lock. It is held by process 123 (apt-get)"
 WAITING = "Waiting for another apt to end, for at most 300 seconds\n"
 
 
 def stub(name: str, text: str):
-    file = FOLDER / "bin" / name
+    file = folder / "bin" / name
     file.write_text("#!/bin/sh\n" + text)
     file.chmod(0o755)
 
@@ -27,24 +22,18 @@ def stub(name: str, text: str):
 def install(failures: int, message: str, packages=("hello",)) -> tuple:
     """What .ci/install does if the first `failures` updates fail so, and apt has no package absent-*: exit code, output,
     calls of apt-get, seconds slept."""
-    shutil.rmtree(FOLDER, ignore_errors=True)
-    (FOLDER / "bin").mkdir(parents=True)
+    shutil.rmtree(folder, ignore_errors=True)
+    (folder / "bin").mkdir(parents=True)
     stub("dpkg-query", "exit 1\n")  # nothing is installed
     stub("id", "echo 0\n")
-    stub("sleep", f'echo "$1" >>{FOLDER}/slept\n')
-    stub("apt-get", f"""echo "$*" >>{FOLDER}/called
-case $* in *absent-*) exit 100 ;; *update*) [ $(grep -c update {FOLDER}/called) -gt {failures} ] || {{ echo '{message}' >&2; exit 100; }} ;; esac
+    stub("sleep", f'echo "$1" >>{folder}/slept\n')
+    stub("apt-get", f"""echo "$*" >>{folder}/called
+case $* in *absent-*) exit 100 ;; *update*) [ $(grep -c update {folder}/called) -gt {failures} ] || {{ echo '{message}' >&2; exit 100; }} ;; esac
 """)
-    done = subprocess.run([SOURCE / ".ci/install", *packages], capture_output=True, text=True,
-                          env=dict(os.environ, PATH=f"{FOLDER}/bin:{os.environ['PATH']}"))
-    slept = FOLDER / "slept"
-    return (done.returncode, done.stdout, done.stderr, (FOLDER / "called").read_text().splitlines(),
+    done = run(program, *packages, code=None, env=dict(os.environ, PATH=f"{folder}/bin:{os.environ['PATH']}"))
+    slept = folder / "slept"
+    return (done.returncode, done.stdout, done.stderr, (folder / "called").read_text().splitlines(),
             sum(map(int, slept.read_text().split())) if slept.exists() else 0)
-
-
-def demand(holds: bool, what):
-    if not holds:
-        sys.exit(f"waits.py: {what}")
 
 
 code, out, err, called, slept = install(0, LOCKED)
@@ -70,6 +59,7 @@ code, out, err, called, slept = install(0, LOCKED, ["absent-1"])
 demand(code == 100 and called[-1].endswith("absent-1"), (code, out, err, called))
 
 # Fedora, macOS and others.
-shutil.rmtree(FOLDER / "bin")
-done = subprocess.run(["/bin/sh", SOURCE / ".ci/install", "hello", "world"], capture_output=True, text=True, env={"PATH": f"{FOLDER}/bin"})
-demand(done.returncode == 0 and done.stdout.endswith("(these are Debian's):\n  hello world\n"), done)
+shutil.rmtree(folder / "bin")
+done = run("/bin/sh", program, "hello", "world", env={"PATH": f"{folder}/bin"})
+demand(done.stdout.endswith("(these are Debian's):\n  hello world\n"), done)
+finish()

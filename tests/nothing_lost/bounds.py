@@ -12,15 +12,14 @@ import subprocess
 import sys
 
 import scratch
+from trial import demand, finish, folder, program
 
 MEGABYTES = 200
 
 
 class Bounds:
-    def __init__(self, options, check):
-        self.check, self.seconds, self.only = check, options.seconds, options.only
-        self.program = str(options.program.resolve())
-        self.folder = scratch.make_folder(options.folder)
+    def __init__(self, options):
+        self.seconds, self.only = options.seconds, options.only
         self.seconds_of, self.megabytes_of = {}, {}  # by command
 
     def leaves_out(self, command):
@@ -32,17 +31,17 @@ class Bounds:
             return ""
         def limit():
             resource.setrlimit(resource.RLIMIT_CPU, (self.seconds, self.seconds + 1))
-        error = self.folder / "error"
+        error = folder / "error"
         with open(error, "w") as file:
-            process = subprocess.Popen([self.program, *command], stdout=subprocess.DEVNULL, stderr=file,
-                                       preexec_fn=limit, cwd=self.folder)
+            process = subprocess.Popen([program, *command], stdout=subprocess.DEVNULL, stderr=file,
+                                       preexec_fn=limit, cwd=folder)
             _, status, usage = os.wait4(process.pid, 0)
         process.returncode = code = os.waitstatus_to_exitcode(status)
         seconds, megabytes = usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
         told, words = " ".join(command), error.read_text()
         self.seconds_of[told], self.megabytes_of[told] = seconds, megabytes
-        self.check(code in codes, f"{told}: exit code {code} after {seconds:.1f} s: {words}")
-        self.check(megabytes < MEGABYTES, f"{told}: {megabytes:.0f} MB")
+        demand(code in codes, f"{told}: exit code {code} after {seconds:.1f} s: {words}")
+        demand(megabytes < MEGABYTES, f"{told}: {megabytes:.0f} MB")
         return words
 
     def tell(self, what):
@@ -56,23 +55,23 @@ class Bounds:
         if self.leaves_out(command):
             return
         self.run([*command, "-o", "out.json"], [0])
-        out = self.folder / "out.json"
+        out = folder / "out.json"
         if out.exists():
             with open(out) as file:
                 matches = map(re.compile(r' "stop_reason": "(\w+)"').match, file)
                 reason = next((match[1] for match in matches if match), "")
-            self.check(reason in reasons, f"{' '.join(command)}: stopped by {reason}")
+            demand(reason in reasons, f"{' '.join(command)}: stopped by {reason}")
             if read:
-                done = subprocess.run([self.program, "check", "run", out], capture_output=True, text=True)
-                self.check(done.returncode == 0, f"{' '.join(command)}: cannot be read: {done.stderr}")
+                done = subprocess.run([program, "check", "run", out], capture_output=True, text=True)
+                demand(done.returncode == 0, f"{' '.join(command)}: cannot be read: {done.stderr}")
             out.unlink()
 
     def rejects(self, words, command, codes=(2,)):
         if self.leaves_out(command):
             return
         said = self.run([*command, "-o", "out.json"], codes)
-        self.check(words in said, f"{' '.join(command)}: says {said!r}")
-        self.check(not (self.folder / "out.json").exists(), f"{' '.join(command)}: wrote a file")
+        demand(words in said, f"{' '.join(command)}: says {said!r}")
+        demand(not (folder / "out.json").exists(), f"{' '.join(command)}: wrote a file")
 
 
 EVERYTHING = ["--record", "half_cycles,impacts,contacts,energy"]
@@ -122,7 +121,7 @@ def known(b, tree):
     # What a sweep holds in memory does not grow with its runs, whose order is that of the table.
     b.run(["sweep", "--vary", "mass_ratio=0.005:0.08:1000", "--vary", "restitution=0.1:0.9:1000", "--keep", "impacts",
            "--engine", "restitution", "--until-time", "2", "-o", "out.csv"], [0])
-    (b.folder / "out.csv").unlink(missing_ok=True)
+    (folder / "out.csv").unlink(missing_ok=True)
 
     # Ensembles and threads.
     runs, claims = str(tree / "build" / "runs" / "exact"), str(scratch.SOURCE / "data" / "claims.json")
@@ -172,9 +171,8 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", help="commands with this text in them")
     options = parser.parse_args()
-    check = scratch.Check()
-    bounds = Bounds(options, check)
-    tree = scratch.make_tree(bounds.folder / "tree", options.program)
+    bounds = Bounds(options)
+    tree = scratch.make_tree(folder / "tree", program)
     if not bounds.leaves_out(["verify"]):
         made = scratch.make(tree, "build/build.ninja")
         runs = subprocess.run(["cmake", "--build", "build", "--target", "runs-exact"], cwd=tree, capture_output=True)
@@ -188,7 +186,7 @@ def main():
         # Unstable steps of central differences overflow; closed forms do not.
         bounds.run([*command, "-o", "out.json"], [0, 2, 4] if "cem" in command else [0, 2])
     bounds.tell(f"and {options.scenes} drawn with seed {options.seed}")
-    check.end(f"bounds, {check.count} checks")
+    finish("bounds, ")
 
 
 if __name__ == "__main__":

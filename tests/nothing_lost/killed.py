@@ -18,6 +18,8 @@ import time
 from pathlib import Path
 
 import scratch
+from processes import adopt_orphans, descendants, end_all, kill
+from trial import demand, finish, folder, program
 
 
 class Victim:
@@ -59,14 +61,14 @@ class Victim:
 POINTS = 5  # of each file's writing (hold.cpp)
 
 
-def stop_while_writing(victim, hold, random_moments, check):
+def stop_while_writing(victim, hold, random_moments):
     """Starts the victim and stops it at one of its points. Whether it got there."""
     at = random_moments.randrange(POINTS * len(victim.files))
     victim.start(LD_PRELOAD=str(hold), HOLD_AT=str(at))
     _, status = os.waitpid(victim.process.pid, os.WUNTRACED)
     if not os.WIFSTOPPED(status):
         victim.process.returncode = os.waitstatus_to_exitcode(status)
-    return check(os.WIFSTOPPED(status), f"{victim.name}: not stopped at point {at} of its writing: {status}")
+    return demand(os.WIFSTOPPED(status), f"{victim.name}: not stopped at point {at} of its writing: {status}")
 
 
 def see_unfinished(victim, random_moments):
@@ -82,13 +84,13 @@ def see_unfinished(victim, random_moments):
     return victim.process.poll() is None
 
 
-def kill_once(victim, hold, aimed, random_moments, check, tally):
+def kill_once(victim, hold, aimed, random_moments, tally):
     """Aimed at the writing, or at any time."""
     # Where the bytes are there already nothing is written.
     old = {file: random_moments.choice([None, b"old\n"] + [victim.new[file]] * (not aimed)) for file in victim.files}
     victim.put_back(old)
     if aimed and victim.name != "draw":
-        alive = stop_while_writing(victim, hold, random_moments, check)
+        alive = stop_while_writing(victim, hold, random_moments)
     else:
         victim.start()
         if aimed:
@@ -98,22 +100,22 @@ def kill_once(victim, hold, aimed, random_moments, check, tally):
             alive = victim.process.poll() is None
     if alive:
         os.killpg(victim.process.pid, signal.SIGKILL)
-    scratch.kill_all_below_me()
+    end_all()
     victim.process.stderr.close()
     left = scratch.unfinished_in(victim.folder)
     tally["alive"] += alive
     tally["unfinished"] += bool(left)
     for file, content in victim.contents().items():
-        check(content in (old[file], victim.new[file]), f"{victim.name}: {file} is partial after a kill")
+        demand(content in (old[file], victim.new[file]), f"{victim.name}: {file} is partial after a kill")
     victim.start()
     _, error = victim.process.communicate()
-    check(victim.process.returncode in (0, 1), f"{victim.name}, again: {error.decode()}")
-    check(victim.contents() == victim.new, f"{victim.name}, again: other bytes than undisturbed")
+    demand(victim.process.returncode in (0, 1), f"{victim.name}, again: {error.decode()}")
+    demand(victim.contents() == victim.new, f"{victim.name}, again: other bytes than undisturbed")
     left = scratch.unfinished_in(victim.folder)
-    check(not left, f"{victim.name}, again: unfinished files remain: {left}")
+    demand(not left, f"{victim.name}, again: unfinished files remain: {left}")
 
 
-def kill_make(tree, wanted, random_moments, check, tally, duration):
+def kill_make(tree, wanted, random_moments, tally, duration):
     """All that it began, make and ninja alone, or one process of all."""
     whom = random_moments.choice(["all", "all", "group", "one"])
     gone = random_moments.choice([0.3, 0.7, 1])
@@ -127,17 +129,17 @@ def kill_make(tree, wanted, random_moments, check, tally, duration):
     time.sleep(random_moments.uniform(0, 0.8 * gone * duration))
     tally["alive"] += make.poll() is None
     if whom == "one":
-        below = scratch.descendants(make.pid)
-        scratch.kill(random_moments.sample(below, 1) if below else [])
+        below = descendants(make.pid)
+        kill(random_moments.sample(below, 1) if below else [])
         make.wait()
     elif make.poll() is None:
         os.killpg(make.pid, signal.SIGKILL)
         make.wait()
     if whom == "all":
-        scratch.kill_all_below_me()
+        end_all()
     tally["unfinished"] += bool(scratch.unfinished_in(tree))
     for file, content in scratch.made_in(tree).items():
-        check(content == wanted.get(file), f"make figures, {whom} killed: {file} is partial")
+        demand(content == wanted.get(file), f"make figures, {whom} killed: {file} is partial")
 
 
 def main():
@@ -150,12 +152,10 @@ def main():
     seed = options.seed if options.seed is not None else random.SystemRandom().randrange(2**32)
     print(f"seed {seed}", flush=True)
     random_moments = random.Random(seed)
-    scratch.adopt_orphans()
-    folder = scratch.make_folder(options.folder)
+    adopt_orphans()
     scratch.count_lines_in(folder)
-    check = scratch.Check()
 
-    tree = scratch.make_tree(folder / "tree", options.program.resolve(), options.figures)
+    tree = scratch.make_tree(folder / "tree", program, options.figures)
     configured = scratch.make(tree, "build/build.ninja")
     begin = time.monotonic()
     undisturbed = scratch.make(tree, "figures")
@@ -164,10 +164,10 @@ def main():
     duration = time.monotonic() - begin
     wanted = scratch.made_in(tree)
 
-    program, runs = str(options.program.resolve()), str(tree / "build" / "runs" / "exact")
+    runs = str(tree / "build" / "runs" / "exact")
     catalogue, scenes = str(tree / "figures" / "catalogue.json"), str(tree / "data" / "scenes")
     # What claims rest on: the runs of the figures, and the further ones that measures compare with.
-    other_tree = scratch.make_tree(folder / "runs", options.program.resolve(), options.figures)
+    other_tree = scratch.make_tree(folder / "runs", program, options.figures)
     scratch.make(other_tree, "build/build.ninja")
     subprocess.run(["cmake", "--build", "build", "--target", "runs-exact"], cwd=other_tree, check=True,
                    stdout=subprocess.DEVNULL)
@@ -206,21 +206,21 @@ def main():
         aimed = False
         while tally["alive"] < shares[each.name]:
             aimed = not aimed
-            kill_once(each, options.hold.resolve(), aimed, random_moments, check, tally)
+            kill_once(each, options.hold.resolve(), aimed, random_moments, tally)
         print(f"{each.name}: {tally['alive']} kills, {tally['unfinished']} left something unfinished", flush=True)
 
     tally = {"alive": 0, "unfinished": 0}
     while tally["alive"] < shares["make figures"]:
-        kill_make(tree, wanted, random_moments, check, tally, duration)
+        kill_make(tree, wanted, random_moments, tally, duration)
         # Mostly undisturbed to the end; else the next is killed going on from here.
         if random_moments.random() < 0.7 or tally["alive"] == shares["make figures"]:
             again = scratch.make(tree, "figures")
-            check(again.returncode == 0, f"make figures, again: {again.stdout}{again.stderr}")
-            check(scratch.made_in(tree) == wanted, "make figures, again: other files or bytes than undisturbed")
+            demand(again.returncode == 0, f"make figures, again: {again.stdout}{again.stderr}")
+            demand(scratch.made_in(tree) == wanted, "make figures, again: other files or bytes than undisturbed")
             left = scratch.unfinished_in(tree)
-            check(not left, f"make figures, again: unfinished files remain: {left}")
+            demand(not left, f"make figures, again: unfinished files remain: {left}")
     print(f"make figures: {tally['alive']} kills, {tally['unfinished']} left something unfinished")
-    check.end(f"{options.kills} kills, {check.count} checks")
+    finish(f"{options.kills} kills, ")
 
 
 if __name__ == "__main__":

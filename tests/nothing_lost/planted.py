@@ -10,6 +10,7 @@ import subprocess
 import sys
 
 import scratch
+from trial import demand, finish, folder, program
 
 # The arguments with -o FILE taken out, what was made then stands in $made.
 AFTERWARDS = """#!/bin/sh
@@ -125,8 +126,6 @@ def main():
     parser.add_argument("--hold", required=True, help="as killed.py wants it")
     parser.add_argument("--only", default="", help="faults with this text in their names")
     options = parser.parse_args()
-    folder = scratch.make_folder(options.folder)
-    check = scratch.Check()
     may_mount, skipped = scratch.may_mount(), []
 
     def find(name, program, tests_folder, tests):
@@ -135,26 +134,26 @@ def main():
                 skipped.append(f"{script} on what {name}: no mount namespace is permitted here")
                 continue
             hold = ["--hold", options.hold] if script == "killed.py" else []
-            command = [sys.executable, "-B", str(tests_folder / script), "--program", str(program),
-                       "--folder", str(folder / "work"), *hold, *more]
+            command = [sys.executable, "-B", str(tests_folder / script), str(program),
+                       str(folder / "work"), *hold, *more]
             done = subprocess.run(command, capture_output=True, text=True)
-            faults = [line for line in done.stderr.splitlines() if line.startswith("FAULT:")]
+            faults = [line for line in done.stdout.splitlines() if line.startswith("FAULT:")]
             found = [fault for fault in faults if expected in fault]
-            check(done.returncode == 1 and found,
-                  f"{script} has not found what {name}, by {expected!r}: {done.stdout}{done.stderr}")
+            demand(done.returncode == 1 and found,
+                   f"{script} has not found what {name}, by {expected!r}: {done.stdout}{done.stderr}")
             print(f"{script}: {len(found)} faults of {len(faults)} say that it {name}", flush=True)
 
     here = scratch.SOURCE / "tests" / "nothing_lost"
     for number, (name, (script, fault, tests)) in enumerate(FAULTS.items()):
-        program = folder / f"program-{number}"
-        program.write_text(script.format(program=options.program.resolve(), fault=fault))
-        program.chmod(0o755)
+        faulty = folder / f"program-{number}"
+        faulty.write_text(script.format(program=program, fault=fault))
+        faulty.chmod(0o755)
         if options.only in name:
-            find(name, program, here, tests)
+            find(name, faulty, here, tests)
     for name, (pattern, replacement, tests) in MAKEFILE_FAULTS.items():
         if options.only in name:
-            find(name, options.program.resolve(), planted_tree(folder / "planted", pattern, replacement), tests)
-    check.end(f"planted faults, {check.count} tests", skipped)
+            find(name, program, planted_tree(folder / "planted", pattern, replacement), tests)
+    finish("planted faults, ", skipped)
 
 
 if __name__ == "__main__":

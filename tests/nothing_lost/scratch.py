@@ -5,15 +5,11 @@ program as it is built, but no sources. What is made there is made by the projec
 """
 
 import argparse
-import ctypes
 import json
 import os
 import re
 import shutil
-import signal
 import subprocess
-import sys
-import time
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
@@ -32,8 +28,8 @@ ENVIRONMENT = {name: value for name, value in os.environ.items()
 
 def arguments(description):
     parser = argparse.ArgumentParser(description=description)
-    parser.add_argument("--program", type=Path, required=True, help="impact-damper as it is built")
-    parser.add_argument("--folder", type=Path, required=True, help="to work in; it is made anew")
+    parser.add_argument("program", help="impact-damper as it is built")
+    parser.add_argument("folder", help="to work in; it is made anew")
     return parser
 
 
@@ -98,74 +94,7 @@ def unfinished_in(folder):
                   if name.startswith(".") and name.endswith((".tmp", ".draw")))
 
 
-def adopt_orphans():
-    """Children of killed children become ours, so that they can be found."""
-    ctypes.CDLL(None).prctl(36, 1, 0, 0, 0)
-
-
-def descendants(process):
-    children = {}
-    for status in Path("/proc").glob("[0-9]*/stat"):
-        try:
-            text = status.read_text()
-        except OSError:
-            continue
-        fields = text[text.rindex(")") + 2:].split()
-        children.setdefault(int(fields[1]), []).append(int(text.split(" ", 1)[0]))
-    found, left = [], [process]
-    while left:
-        below = children.get(left.pop(), [])
-        found += below
-        left += below
-    return found
-
-
-def kill(processes):
-    for process in processes:
-        try:
-            os.kill(process, signal.SIGKILL)
-        except ProcessLookupError:
-            pass
-
-
-def kill_all_below_me():
-    """Until none is left; a process may have begun another while it was looked for."""
-    while alive := descendants(os.getpid()):
-        kill(alive)
-        reap()
-
-
-def reap():
-    try:
-        while os.waitpid(-1, os.WNOHANG)[0]:
-            pass
-    except ChildProcessError:
-        pass
-    time.sleep(0.001)
-
-
 def complaints(error: str):
     """The lines on stderr but for progress, which a program tells where it takes longer than two seconds, and for
     complaints about counts of lines that another interrupt has cut off."""
     return [line for line in error.splitlines() if not line.startswith(("report: ", "verify: ", "profiling: "))]
-
-
-class Check:
-    """Counts what was looked at, and ends the program with what was wrong."""
-
-    def __init__(self):
-        self.count, self.faults = 0, []
-
-    def __call__(self, condition, fault):
-        self.count += 1
-        if not condition:
-            self.faults.append(fault)
-            print("FAULT:", fault, file=sys.stderr)
-        return condition
-
-    def end(self, summary, skipped=()):
-        """Exit code 77, for CTest, where nothing is wrong but not all could be tested here."""
-        for what in skipped:
-            print("SKIPPED:", what)
-        print(f"{summary}: {len(self.faults)} faults")
-        sys.exit(1 if self.faults else 77 if skipped else 0)

@@ -8,14 +8,14 @@ import os
 import sys
 
 import scratch
+from trial import demand, finish, folder, program
 
 FIGURES = ["2", "7", "13", "A"]
 
 
 class Tree:
-    def __init__(self, folder, program, check):
-        self.path = scratch.make_tree(folder, program, FIGURES)
-        self.check = check
+    def __init__(self):
+        self.path = scratch.make_tree(folder / "tree", program, FIGURES)
         self.make("figures")
 
     def make(self, *targets):
@@ -38,12 +38,12 @@ class Tree:
         self.make("figures")
         new = {output for _, _, _, output, _ in self.steps() - before if output.endswith((".json", ".dat", ".svg"))}
         new = {str((self.path / "build" / step).relative_to(self.path)) for step in new}
-        self.check(new == set(steps), f"{what}: took the steps {sorted(new)} instead of {sorted(steps)}")
+        demand(new == set(steps), f"{what}: took the steps {sorted(new)} instead of {sorted(steps)}")
         changed = {file for file, stamp in self.stamps().items() if stamp != stamps.get(file)}
-        self.check(changed == set(written), f"{what}: wrote {sorted(changed)} instead of {sorted(written)}")
+        demand(changed == set(written), f"{what}: wrote {sorted(changed)} instead of {sorted(written)}")
         kept = scratch.made_in(self.path)
         for file in changed:
-            self.check(kept[file] != bytes_before.get(file), f"{what}: wrote {file} with the same bytes")
+            demand(kept[file] != bytes_before.get(file), f"{what}: wrote {file} with the same bytes")
 
     def edit(self, file, change):
         path = self.path / file
@@ -70,18 +70,16 @@ def with_number(key, value):
 
 
 def main():
-    options = scratch.arguments(__doc__).parse_args()
-    check = scratch.Check()
-    tree = Tree(options.folder, options.program, check)
+    tree = Tree()
     table = "build/series/exact/fig{}.dat".format
     run = "build/runs/exact/{}.json".format
     scenes = sorted(file.stem for file in (tree.path / "build" / "runs" / "exact").glob("*.json"))
     of_figures = sorted({scene for each in json.loads((tree.path / "figures" / "catalogue.json").read_text())["figures"]
                          for scene in (curve["scene"] for curve in each.get("curves", []))})
-    check(set(of_figures) <= set(scenes), f"runs: {scenes}")
+    demand(set(of_figures) <= set(scenes), f"runs: {scenes}")
 
     tree.after(lambda: None, "nothing changed", [], [])
-    check("up to date" in tree.make("figures"), "make figures does not say that all is up to date")
+    demand("up to date" in tree.make("figures"), "make figures does not say that all is up to date")
 
     program = "build/src/impact-damper"
     tree.after(lambda: os.utime(tree.path / program), "the program built anew, with the same results",
@@ -106,7 +104,7 @@ def main():
         figure["claims"] = []
     (tree.path / "figures" / "catalogue.json").write_text(json.dumps(catalogue))
     tree.make("figures", "verify")
-    check('"verdict": "reproduced"' in (tree.path / "build" / "verdicts-exact.json").read_text(), "no verdict")
+    demand('"verdict": "reproduced"' in (tree.path / "build" / "verdicts-exact.json").read_text(), "no verdict")
     steps, stamps = tree.steps(), tree.stamps()
 
     def wanting_more(text):
@@ -115,14 +113,14 @@ def main():
         return json.dumps(claims)
     tree.edit("data/claims.json", wanting_more)
     text = tree.make("verify")
-    check("largest-loss" in text and "not reproduced" in text, f"verify has not seen the changed claim: {text}")
-    check(tree.steps() == steps, "a changed claim made ninja work")
+    demand("largest-loss" in text and "not reproduced" in text, f"verify has not seen the changed claim: {text}")
+    demand(tree.steps() == steps, "a changed claim made ninja work")
     changed = {file for file, stamp in tree.stamps().items() if stamp != stamps[file]}
-    check(changed == {"build/verdicts-exact.json"}, f"a changed claim wrote {sorted(changed)}")
+    demand(changed == {"build/verdicts-exact.json"}, f"a changed claim wrote {sorted(changed)}")
     stamps = tree.stamps()
     tree.make("verify")
-    check(tree.stamps() == stamps, "the same verdicts were written again")
-    check.end(f"time stamps, {check.count} checks")
+    demand(tree.stamps() == stamps, "the same verdicts were written again")
+    finish("time stamps, ")
 
 
 if __name__ == "__main__":

@@ -11,20 +11,17 @@ import shutil
 import signal
 import subprocess
 import sys
-from pathlib import Path
 
 import scratch
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from packed_files import read  # noqa: E402
+from packed_files import read
+from trial import demand, finish, folder, program
 
 FULL, READ_ONLY, DENIED = "No space left on device", "Read-only file system", "Permission denied"
 
 
 class Programs:
-    def __init__(self, options, tree, check):
-        self.tree, self.check = tree, check
-        self.program = str(options.program.resolve())
+    def __init__(self, tree):
+        self.tree = tree
         self.draw = str(tree / "figures" / "draw")
         self.runs = str(tree / "build" / "runs" / "exact")
         self.scenes = str(tree / "data" / "scenes")
@@ -33,17 +30,17 @@ class Programs:
         self.claims = str(tree / "claims.json")
 
     def run(self, *more):
-        return [self.program, "run", "--until-time", "50", "--record", "impacts,history", "--history", "0:50:2000",
+        return [program, "run", "--until-time", "50", "--record", "impacts,history", "--history", "0:50:2000",
                 *more]
 
     def series(self, *more):
-        return [self.program, "series", "--catalogue", self.catalogue, "--runs", self.runs, "--scenes", self.scenes, *more]
+        return [program, "series", "--catalogue", self.catalogue, "--runs", self.runs, "--scenes", self.scenes, *more]
 
     def verify(self, *more):
-        return [self.program, "verify", "--claims", self.claims, "--runs", self.runs, "--scenes", self.scenes, *more]
+        return [program, "verify", "--claims", self.claims, "--runs", self.runs, "--scenes", self.scenes, *more]
 
     def report(self, *more):
-        return [self.program, "report", "--until-time", "10", "--members", "2", *more]
+        return [program, "report", "--until-time", "10", "--members", "2", *more]
 
     def drawing(self, stem):
         return [self.draw, str(self.tree / "figures" / "fig07.gp"), self.table, "A figure", stem, scratch.VERSION]
@@ -52,20 +49,20 @@ class Programs:
         """The command fails with exit code 5 and one line that holds the words."""
         done = subprocess.run(command, text=True, capture_output="stdout" not in more,
                               **({"stderr": subprocess.PIPE} if "stdout" in more else {}), **more)
-        told = " ".join(command[:1] + command[1:])
-        self.check(done.returncode == 5, f"{told}: exit code {done.returncode}: {done.stderr}")
+        told = " ".join(map(str, command))
+        demand(done.returncode == 5, f"{told}: exit code {done.returncode}: {done.stderr}")
         lines = scratch.complaints(done.stderr)
-        self.check(len(lines) == 1 and all(word in lines[0] for word in words),
-                   f"{told}: says {done.stderr!r} instead of {words}")
+        demand(len(lines) == 1 and all(word in lines[0] for word in words),
+               f"{told}: says {done.stderr!r} instead of {words}")
 
 
 def devices(p):
     for command in (p.run("-o", "/dev/full"), p.series("--figure", "7", "-o", "/dev/full"), p.report("-o", "/dev/full"),
                     p.verify("-o", "/dev/full"), p.verify("--markdown", "/dev/full")):
         p.rejected(command, ["/dev/full: cannot be written", FULL])
-    to_stdout = [p.run(), p.series("--figure", "7"), p.verify(), p.report(), [p.program, "scenes", str(p.tree / "data/scenes")],
-                 [p.program, "figures", p.catalogue], [p.program, "--help"], [p.program, "run", "--help"],
-                 [p.program, "--version"]]
+    to_stdout = [p.run(), p.series("--figure", "7"), p.verify(), p.report(), [program, "scenes", str(p.tree / "data/scenes")],
+                 [program, "figures", p.catalogue], [program, "--help"], [program, "run", "--help"],
+                 [program, "--version"]]
     with open("/dev/full", "w") as full:
         for command in to_stdout:
             p.rejected(command, ["standard output: cannot be written", FULL], stdout=full)
@@ -75,17 +72,17 @@ def devices(p):
     verdicts = p.tree / "verdicts.json"
     with open("/dev/full", "w") as full:
         p.rejected(p.verify("-o", str(verdicts)), ["standard output"], stdout=full)
-    p.check(verdicts.exists(), "verify with standard output on a full disk has lost its verdicts")
+    demand(verdicts.exists(), "verify with standard output on a full disk has lost its verdicts")
 
     # A reader that has seen enough: more than a pipe holds is written, and one line read.
-    command = [p.program, "run", "--until-time", "50", "--record", "history", "--history", "0:50:100000"]
+    command = [program, "run", "--until-time", "50", "--record", "history", "--history", "0:50:100000"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         process.stdout.readline()
         process.stdout.close()
         error = process.stderr.read()
-    p.check(process.returncode == -signal.SIGPIPE and error == b"", f"a closed pipe: {process.returncode}, {error}")
+    demand(process.returncode == -signal.SIGPIPE and error == b"", f"a closed pipe: {process.returncode}, {error}")
     quiet = subprocess.run(["sh", "-c", '"$0" "$@" | head -n 1', *command], capture_output=True, text=True)
-    p.check(quiet.returncode == 0 and quiet.stderr == "" and quiet.stdout == "{\n", f"| head -n 1: {quiet}")
+    demand(quiet.returncode == 0 and quiet.stderr == "" and quiet.stdout == "{\n", f"| head -n 1: {quiet}")
 
 
 def mount(place, size):
@@ -109,7 +106,7 @@ def small_disk(p, here):
     for name, command in commands.items():
         mount(here, "16m")
         done = subprocess.run(command, cwd=here, capture_output=True, text=True)
-        p.check(done.returncode == 0, f"{name}: {done.stderr}")
+        demand(done.returncode == 0, f"{name}: {done.stderr}")
         new = made_here(here, wanted[name])
         subprocess.run(["umount", str(here)], check=True)
         total = sum(len(content) for content in new.values())
@@ -125,21 +122,21 @@ def small_disk(p, here):
             left = made_here(here, wanted[name])
             told = f"{name} on {pages} pages"
             if done.returncode == 0:
-                p.check(left == new, f"{told}: done, but with other bytes")
+                demand(left == new, f"{told}: done, but with other bytes")
             else:
                 failures += 1
-                p.check(done.returncode == 5, f"{told}: exit code {done.returncode}: {done.stderr}")
+                demand(done.returncode == 5, f"{told}: exit code {done.returncode}: {done.stderr}")
                 lines = scratch.complaints(done.stderr)
-                p.check(len(lines) == 1 and "cannot be written" in lines[0] and FULL in lines[0],
-                        f"{told}: says {done.stderr!r}")
+                demand(len(lines) == 1 and "cannot be written" in lines[0] and FULL in lines[0],
+                       f"{told}: says {done.stderr!r}")
                 for file in new:
-                    p.check(left[file] in (old[file], new[file]), f"{told}: {file} is partial")
-            p.check(not scratch.unfinished_in(here), f"{told}: unfinished: {scratch.unfinished_in(here)}")
+                    demand(left[file] in (old[file], new[file]), f"{told}: {file} is partial")
+            demand(not scratch.unfinished_in(here), f"{told}: unfinished: {scratch.unfinished_in(here)}")
             resize(here, "size=16m")
             done = subprocess.run(command, cwd=here, capture_output=True, text=True)
-            p.check(done.returncode == 0 and made_here(here, wanted[name]) == new, f"{told}, then with room: {done}")
+            demand(done.returncode == 0 and made_here(here, wanted[name]) == new, f"{told}, then with room: {done}")
             subprocess.run(["umount", str(here)], check=True)
-        p.check(failures > 0, f"{name} never met a full disk")
+        demand(failures > 0, f"{name} never met a full disk")
         print(f"{name}: {failures} of 9 disks too small for it")
 
 
@@ -154,16 +151,16 @@ def read_only_disk(p, here):
                           ("verdicts.json", p.verify("-o", "verdicts.json")),
                           ("page.html", p.report("-o", "page.html")), ("./fig.", p.drawing("./fig"))):
         p.rejected(command, [file, "cannot be written", READ_ONLY], cwd=here)
-    p.check((here / "out.json").read_text() == "old\n", "a read-only file was changed")
+    demand((here / "out.json").read_text() == "old\n", "a read-only file was changed")
     subprocess.run(["umount", str(here)], check=True)
 
 
-def make_on_small_disk(options, p, folder, wanted):
-    tree = scratch.make_tree(folder / "small", options.program, FIGURES)
+def make_on_small_disk(wanted):
+    tree = scratch.make_tree(folder / "small", program, FIGURES)
     build = tree / "build"
     mount(build, "64m")
     (build / "src").mkdir()
-    shutil.copy(options.program, build / "src" / "impact-damper")
+    shutil.copy(program, build / "src" / "impact-damper")
     scratch.make(tree, "build/build.ninja")
     used = sum(file.stat().st_size // 4096 + 1 for file in build.rglob("*") if file.is_file())
     failed = 0
@@ -172,12 +169,12 @@ def make_on_small_disk(options, p, folder, wanted):
         done = scratch.make(tree, "figures")
         failed += done.returncode != 0
         for file, content in scratch.made_in(tree).items():
-            p.check(content == wanted[file], f"make figures with {room} pages: {file} is partial")
-        p.check(not scratch.unfinished_in(tree), f"make figures with {room} pages: {scratch.unfinished_in(tree)}")
-    p.check(failed > 0, "make figures never met a full disk")
+            demand(content == wanted[file], f"make figures with {room} pages: {file} is partial")
+        demand(not scratch.unfinished_in(tree), f"make figures with {room} pages: {scratch.unfinished_in(tree)}")
+    demand(failed > 0, "make figures never met a full disk")
     resize(build, "size=64m")
     done = scratch.make(tree, "figures")
-    p.check(done.returncode == 0 and scratch.made_in(tree) == wanted, f"make figures with room again: {done}")
+    demand(done.returncode == 0 and scratch.made_in(tree) == wanted, f"make figures with room again: {done}")
     print(f"make figures: {failed} of 4 disks too small for it")
     subprocess.run(["umount", str(build)], check=True)
 
@@ -185,7 +182,7 @@ def make_on_small_disk(options, p, folder, wanted):
 def without_permission(p, here):
     """As nobody, who may read the program and the input, in a folder that is another's."""
     nobody = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"]
-    if subprocess.run([*nobody, p.program, "--version"], capture_output=True).returncode != 0:
+    if subprocess.run([*nobody, program, "--version"], capture_output=True).returncode != 0:
         return False
     scratch.make_folder(here)
     here.chmod(0o755)
@@ -201,31 +198,28 @@ FIGURES = ["5", "7"]
 
 
 def main():
-    options = scratch.arguments(__doc__).parse_args()
     inside = "NOTHING_LOST_INSIDE" in os.environ
     if not inside and scratch.may_mount():
         os.environ["NOTHING_LOST_INSIDE"] = "1"
         os.execvp("unshare", ["unshare", "-m", sys.executable, *sys.argv])
-    check = scratch.Check()
-    folder = scratch.make_folder(options.folder)
-    tree = scratch.make_tree(folder / "tree", options.program, FIGURES)
+    tree = scratch.make_tree(folder / "tree", program, FIGURES)
     first = scratch.make(tree, "figures")
     if first.returncode != 0:
         sys.exit(first.stdout + first.stderr)
     (tree / "claims.json").write_bytes(read(scratch.SOURCE / "tests/cli/files.packed")["claims.json"][1])
-    p = Programs(options, tree, check)
+    p = Programs(tree)
     skipped = []
     devices(p)
     if inside:
         here = scratch.make_folder(folder / "disk")
         small_disk(p, here)
         read_only_disk(p, here)
-        make_on_small_disk(options, p, folder, scratch.made_in(tree))
+        make_on_small_disk(scratch.made_in(tree))
     else:
         skipped.append("the small and the read-only disk: no mount namespace is permitted here")
     if os.getuid() != 0 or not shutil.which("setpriv") or not without_permission(p, folder / "anothers"):
         skipped.append("the folder without permission: nobody cannot be played here")
-    check.end(f"places that cannot be written, {check.count} checks", skipped)
+    finish("places that cannot be written, ", skipped)
 
 
 if __name__ == "__main__":

@@ -1,10 +1,9 @@
-#!/usr/bin/env python3
-"""The report in a browser: what a reader sees, clicks and hears of it.
+"""The report, or reports about scenes, in a browser: what a reader sees, clicks and hears of them.
 
-    browser.py PAGE TABLES [SCREENSHOTS]
+    browser.py Report PAGE TABLES [SCREENSHOTS]      PAGE is the report, TABLES the folder of the tables behind its figures
+    browser.py ReportsAboutScenes FOLDER [SCREENSHOTS]      FOLDER holds the pages that own_report/scenes.py has made
 
-PAGE is the report, TABLES the folder of the tables behind its figures. SCREENSHOTS, if given, is filled with pictures
-to look at. Exit codes: 1 a fault, 77 there is no Chromium.
+SCREENSHOTS, if given, is filled with pictures to look at. Exit codes: 1 a fault, 77 there is no Chromium.
 """
 import json
 import re
@@ -13,11 +12,10 @@ import unittest
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
-import chromium
+from browsers import WIDTHS, InABrowser, demand_chromium
 
 SOURCE = Path(__file__).resolve().parents[2]
-PAGE, TABLES, SCREENSHOTS = None, None, None
-WIDTHS = {"phone": 390, "desk": 1280}
+PAGE, TABLES, FOLDER, SCREENSHOTS = None, None, None, None
 FIGURES = {figure["figure"]: figure for figure in json.loads((SOURCE / "figures/catalogue.json").read_text())["figures"]}
 CHAPTERS = len(re.findall(r"^## \d+[.]", (SOURCE / "docs/mathematics.md").read_text(encoding="utf-8"), re.MULTILINE))
 
@@ -34,32 +32,14 @@ def contrast(one: str, other: str) -> float:
     return (light + 0.05) / (dark + 0.05)
 
 
-class Report(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.page = chromium.Page()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.page.__exit__()
-
-    def tearDown(self):
-        said, self.page.messages = self.page.messages, []
-        self.assertEqual(said, [], "the browser's console is empty")
-
-    def each_width(self):
-        for name, width in WIDTHS.items():
-            with self.subTest(name):
-                self.page.open(PAGE, width)
-                yield name
-
+class Report(InABrowser):
     def test_it_asks_for_nothing_outside(self):
         text = re.sub(r"<script>.*?</script>", "", PAGE.read_text(encoding="utf-8"), flags=re.S)
         outside = re.findall(r"""(?:src|href|action|data)\s*=\s*["'](?!#|data:,)[^"']*|url\((?!#)[^)]*|@import[^;]*""", text)
         self.assertEqual(outside, [])
 
     def test_every_figure_is_drawn(self):
-        for _ in self.each_width():
+        for _ in self.each_width(PAGE):
             drawn = self.page.does("""[...document.querySelectorAll("figure.plot")].map(figure => {
               const box = figure.querySelector("svg").getBoundingClientRect();
               return [figure.id, box.width, box.height, figure.querySelectorAll("svg path").length];
@@ -85,7 +65,7 @@ class Report(unittest.TestCase):
         self.assertGreater(self.page.does('document.querySelectorAll("a[href]").length'), 30)
 
     def test_the_contents_list_the_chapters_of_the_appendix(self):
-        for _ in self.each_width():
+        for _ in self.each_width(PAGE):
             seen = self.page.does("""[...document.querySelectorAll('nav a[href^="#mathematics-"]')]
               .filter(a => a.getBoundingClientRect().height > 0).map(a => a.textContent)""")
             self.assertEqual([int(each.split(".")[0]) for each in seen], list(range(1, CHAPTERS + 1)))
@@ -135,7 +115,7 @@ class Report(unittest.TestCase):
         self.assertEqual(hidden, 0)
 
     def test_nothing_is_wider_than_the_window(self):
-        for name in self.each_width():
+        for name in self.each_width(PAGE):
             width = WIDTHS[name]  # a telephone's browser would widen the page, and with it innerWidth
             self.assertEqual(self.page.does("document.documentElement.scrollWidth"), width)
             wide = self.page.does(f"""[...document.querySelectorAll("main *")].filter(each =>
@@ -148,7 +128,7 @@ class Report(unittest.TestCase):
     def test_the_value_under_the_cursor_is_the_tables(self):
         block = (TABLES / "fig08.dat").read_text(encoding="utf-8").split("# curve-2\n")[1].split("\n\n\n")[0]
         rows = [tuple(map(float, line.split())) for line in block.split("\n") if line and line[0].isdigit()]
-        for name in self.each_width():
+        for name in self.each_width(PAGE):
             for amplitude, eta in (rows[50], rows[250], rows[-30]):
                 x, y = self.page.does(f"""(() => {{
                   const svg = document.querySelector("#figure-8 svg");
@@ -289,12 +269,58 @@ class Report(unittest.TestCase):
         self.assertGreater(len(pdf), 100_000)
 
 
+class ReportsAboutScenes(InABrowser):
+    """In units and dimensionless."""
+
+    def test_pages_fit_and_figures_are_drawn(self):
+        for file, name in ((file, name) for file in sorted(FOLDER.glob("*.html")) for name in self.each_width(file)):
+            self.assertEqual(self.page.does("document.documentElement.scrollWidth"), WIDTHS[name])
+            drawn = self.page.does("""[...document.querySelectorAll("figure.plot svg")].map(svg => {
+              const box = svg.getBoundingClientRect();
+              return [box.width, box.height, svg.querySelectorAll("path").length];
+            })""")
+            self.assertTrue(drawn)
+            for width, height, paths in drawn:
+                self.assertGreater(width, 300)
+                self.assertGreater(height, 150)
+                self.assertGreater(paths, 3)
+            self.assertEqual(self.page.does('document.querySelectorAll("figure.plot .reading").length'), len(drawn))
+            if SCREENSHOTS:
+                self.page.screenshot(SCREENSHOTS / f"{file.stem}-{name}.png")
+
+    def test_values_can_be_read_off(self):
+        self.page.open(FOLDER / "in-units.html", WIDTHS["desk"])
+        x, y = self.page.does("""(() => {
+          const svg = document.querySelector("#figure-decay svg");
+          svg.scrollIntoView({block: "center"});
+          const {axes: [{x, y}]} = JSON.parse(svg.querySelector("metadata").textContent);
+          const at = new DOMPoint((x[3] + x[4]) / 2, svg.viewBox.baseVal.height - (y[3] + y[4]) / 2)
+            .matrixTransform(svg.getScreenCTM());
+          return [at.x, at.y];
+        })()""")
+        self.page.moves(x, y)
+        told = self.page.does('document.querySelector("#figure-decay .reading").textContent')
+        self.assertRegex(told, r"time in s = [\d.]+, peak amplitude in mm = [\d.]+")
+        names = self.page.does('[...document.querySelectorAll(".switches button")].map(b => b.textContent)')
+        self.assertIn("secondary mass", names)
+        self.assertEqual([name for name in names if re.match("gnuplot", name)], [])
+
+    def test_dark_pages_are_dark(self):
+        self.page.open(FOLDER / "in-units.html", WIDTHS["phone"], "dark")
+        ground = self.page.does("getComputedStyle(document.body).backgroundColor")
+        self.assertLess(max(map(int, re.findall(r"\d+", ground)[:3])), 60)
+        if SCREENSHOTS:
+            self.page.screenshot(SCREENSHOTS / "dark.png")
+
+
 if __name__ == "__main__":
-    if not chromium.program():
-        print("skipped: Chromium is not here (Debian: chromium)")
-        sys.exit(77)
-    PAGE, TABLES = Path(sys.argv[1]), Path(sys.argv[2])
-    if len(sys.argv) > 3:
-        SCREENSHOTS = Path(sys.argv[3])
+    demand_chromium()
+    which, *words = sys.argv[1:]
+    if which == "Report":
+        PAGE, TABLES, *words = map(Path, words)
+    else:
+        FOLDER, *words = map(Path, words)
+    if words:
+        SCREENSHOTS = words[0]
         SCREENSHOTS.mkdir(parents=True, exist_ok=True)
-    unittest.main(argv=[sys.argv[0]], verbosity=2)
+    unittest.main(argv=sys.argv[:2], verbosity=2)

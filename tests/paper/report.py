@@ -282,7 +282,7 @@ class TheAppendix(unittest.TestCase):
         values = argparse.Namespace(source=copy, claims={each["id"]: each for each in stated}, figures={"B": {}, "F": {}, "9": {}, "12": {}})
         self.assertIn("::: {#M2.1 .equation}", appendix(values, Html(values)))
         for old, new, said in ((r" \tag{M4.1}", "", "has no number"), (r"\tag{M2.2}", r"\tag{M2.1}", "M2.1 stands twice"),
-                               ("by (M3.2)", "by (M3.9)", "M3.9 leads nowhere"), ("Lemma L1.", "Lemma L7.", "L7 leads nowhere"),
+                               ("by (M3.2)", "by (M3.9)", "M3.9 leads nowhere"), ("Lemma L1.", "Lemma L9.", "L9 leads nowhere"),
                                ("[3]", "[0]", r"[0] leads nowhere"), ("chapter 5.3", "chapter 5.9", "chapter 5.9 leads nowhere"),
                                ("Figure 12", "Figure 77", "no figure is called 77"), ("`collapse-carried`", "`collapse`", "no claim is called"),
                                ("(cascade.svg)", "(casacde.svg)", "there is no file casacde.svg"),
@@ -295,7 +295,7 @@ class TheAppendix(unittest.TestCase):
 
     def test_formulas_have_the_spaces_of_tex(self):
         sys.path.insert(0, str(SOURCE / "paper/report"))
-        from formulas import tidied
+        from mathematics import tidied
         text = r"($f(t) = -\sin(t)$), $a \sin t$ and $\left(\frac ab\right) - b$."
         page = tidied(subprocess.run(["pandoc", "--from=markdown", "--to=html5", "--mathml"], input=text, capture_output=True,
                                      text=True, check=True).stdout)

@@ -11,8 +11,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from differences import compare
-from reference import differences
+from differences import compare, differences
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "checks"))
 from sources import WORDS, findings  # noqa: E402
 

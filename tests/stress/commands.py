@@ -2,6 +2,7 @@
 """Runs every command that simulates with random scenes and options, and examines how it ends and what it writes.
 
     commands.py PROGRAM FOLDER [--seconds S] [--count N] [--seed SEED] [--only COMMAND[:NUMBER],...] [--timeout S] [--verbose]
+    commands.py --planted FOLDER    whether it notices every way in which a command can fail
 
 PROGRAM is best the sanitizers' (cmake --preset sanitize, target impact-damper). Each command has cases of its own for
 S seconds (default 120), or N cases, two commands at a time. A case is a function of SEED, the command and the case's
@@ -457,14 +458,43 @@ def examine(command):
     return tally.failed + few
 
 
+# By the number of the case, which the folder it runs in is named after.
+WAYS = ["echo 'no design was found' >&2; exit 1",  # allowed
+        "kill -SEGV $$",
+        "echo '==1==ERROR: AddressSanitizer: heap-buffer-overflow' >&2; exit 1",
+        "echo 'orbits.cpp:1:1: runtime error: index out of bounds' >&2; exit 1",
+        "exit 4",
+        "echo 'this code is not documented' >&2; exit 99",
+        "echo '{\"x\": NaN}' > out.json; printf 'x\\nnan\\n' > out.csv",
+        "echo '{\"x\": 1}' > out.json; printf 'x\\n1,2\\n' > out.csv",
+        "true",  # no file
+        "exec sleep 60"]
+
+
+def planted(folder):
+    """Whether each way is noticed: the program is a script that fails in each of them."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    program = folder / "program"
+    program.write_text("#!/bin/sh\ncase ${PWD##*-} in\n" + "".join(f"{n}) {way} ;;\n" for n, way in enumerate(WAYS)) + "esac\n")
+    program.chmod(0o755)
+    done = subprocess.run([sys.executable, "-B", __file__, program, folder / "cases", "--only", "run", "--count", str(len(WAYS)),
+                           "--timeout", "3", "--seed", "any"], capture_output=True, text=True)
+    failed = [int(number) for number in re.findall(r"^FAILED run:(\d+)", done.stdout, re.MULTILINE)]
+    print(done.stdout, done.stderr)
+    return done.returncode == 1 and failed == list(range(1, len(WAYS)))
+
+
+if sys.argv[1:2] == ["--planted"]:
+    sys.exit(not planted(pathlib.Path(sys.argv[2]).resolve()))
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-parser.add_argument("program", type=lambda text: pathlib.Path(text).resolve())
-parser.add_argument("folder", type=lambda text: pathlib.Path(text).resolve())
+for word in ("program", "folder"):
+    parser.add_argument(word, type=lambda text: pathlib.Path(text).resolve())
 parser.add_argument("--seconds", type=float, default=120)
 parser.add_argument("--count", type=int)
 parser.add_argument("--timeout", type=float, default=600)
-parser.add_argument("--seed")
-parser.add_argument("--only")
+for option in ("--seed", "--only"):
+    parser.add_argument(option)
 parser.add_argument("--verbose", action="store_true", help="say why cases were not valid")
 options = parser.parse_args()
 program = options.program
