@@ -11,8 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "impact_damper/base/number_by_c_library.hpp"
-
 using namespace impact_damper;
 
 TEST_CASE("a number reads back with the bits it was written with") {

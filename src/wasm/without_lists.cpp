@@ -6,7 +6,7 @@
 #include "impact_damper/engines/checked.hpp"
 #include "impact_damper/engines/observer.hpp"
 #include "impact_damper/engines/recorder.hpp"
-#include "impact_damper/math/scalar.hpp"
+#include "impact_damper/math/elementary.hpp"
 
 namespace impact_damper {
 namespace {

@@ -1,10 +1,10 @@
-#include "impact_damper/base/number_by_c_library.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+
+#include "impact_damper/base/number_text.hpp"
 
 namespace impact_damper::by_c_library {
 namespace {
@@ -102,61 +102,33 @@ Decimal shortest(double magnitude) {
   return all;
 }
 
-bool is_digit(char letter) { return letter >= '0' && letter <= '9'; }
-
-std::size_t skip_digits(std::string_view text, std::size_t i) {
-  while (i < text.size() && is_digit(text[i])) ++i;
-  return i;
-}
-
-// Whether the text is a decimal number. strtod accepts more: blanks, a plus sign, hexadecimal digits.
-bool is_decimal(std::string_view text) {
-  std::size_t i = text.starts_with('-') ? 1 : 0;
-  const std::size_t whole = skip_digits(text, i);
-  std::size_t digits = whole - i;
-  i = whole;
-  if (i < text.size() && text[i] == '.') {
-    const std::size_t fraction = skip_digits(text, i + 1);
-    digits += fraction - (i + 1);
-    i = fraction;
-  }
-  if (digits == 0) return false;
-  if (i < text.size() && (text[i] == 'e' || text[i] == 'E')) {
-    ++i;
-    if (i < text.size() && (text[i] == '-' || text[i] == '+')) ++i;
-    const std::size_t exponent = skip_digits(text, i);
-    if (exponent == i) return false;
-    i = exponent;
-  }
-  return i == text.size();
-}
-
 }  // namespace
 
 std::string shortest_text(double value) {
   if (!std::isfinite(value) || value == 0) return printed("%.0f", value);
   const std::string sign = value < 0 ? "-" : "";
   const auto [digits, point] = shortest(std::abs(value));
-  const int count = int(digits.size());
-  // Scientific notation where it is shorter. Both lengths follow from the exponent of the last digit.
-  const int last = point - count;
-  const bool one = count == 1;
-  if (last < -(count + 3) + one || last > 5 - one) {
-    const int exponent = point - 1;
-    return sign + digits.substr(0, 1) + (one ? "" : "." + digits.substr(1)) +
-           printed("e%c%02d", exponent < 0 ? '-' : '+', std::abs(exponent));
-  }
-  if (last >= 0) return printed("%.0f", value);
-  if (point <= 0) return sign + "0." + std::string(std::size_t(-point), '0') + digits;
-  return sign + digits.substr(0, std::size_t(point)) + "." + digits.substr(std::size_t(point));
+  const std::size_t count = digits.size();
+  const int exponent = point - 1;
+  const std::string scientific = digits.substr(0, 1) + (count == 1 ? "" : "." + digits.substr(1)) +
+                                 printed("e%c%02d", exponent < 0 ? '-' : '+', std::abs(exponent));
+  const std::string fixed = point <= 0 ? "0." + std::string(std::size_t(-point), '0') + digits
+                            : std::size_t(point) >= count ? printed("%.0f", std::abs(value))
+                                                          : digits.substr(0, std::size_t(point)) + "." +
+                                                                digits.substr(std::size_t(point));
+  return sign + (scientific.size() < fixed.size() ? scientific : fixed);
 }
 
 std::string rounded_text(double value, int digits) { return printed("%.*g", digits, value); }
 
 std::errc read(std::string_view text, double& value) {
-  if (!is_decimal(text)) return std::errc::invalid_argument;
+  // strtod accepts more than decimal numbers: blanks, a plus sign, hexadecimal digits, "nan".
+  if (text.empty() || text.starts_with('+') || text.find_first_not_of("0123456789.eE+-") != text.npos)
+    return std::errc::invalid_argument;
   const std::string ended(text);
-  const double read = std::strtod(ended.c_str(), nullptr);
+  char* end = nullptr;
+  const double read = std::strtod(ended.c_str(), &end);
+  if (end != ended.c_str() + ended.size()) return std::errc::invalid_argument;
   if (std::isinf(read)) return std::errc::result_out_of_range;
   value = read;
   return {};

@@ -6,8 +6,6 @@
 #include <limits>
 #include <system_error>
 
-#include "impact_damper/base/number_by_c_library.hpp"
-
 namespace impact_damper {
 namespace {
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 namespace impact_damper {
 
@@ -24,5 +25,23 @@ double rounded_to(double value, int digits);
 // sign may precede it, as some instruments write.
 std::optional<double> parse_number(std::string_view text);
 std::optional<std::int64_t> parse_integer(std::string_view text);
+
+// The same by printf and strtod, with the same text as std::to_chars, for standard libraries whose <charconv>
+// supports integers only (LLVM's up to version 13, with which WebAssembly is compiled on Debian 12). Correct
+// only in the locale "C", the only one there.
+namespace by_c_library {
+
+// Returns the text of std::to_chars(value): the shortest that reads back as `value`.
+std::string shortest_text(double value);
+
+// Returns the text of std::to_chars(value, std::chars_format::general, digits).
+std::string rounded_text(double value, int digits);
+
+// Reads the whole of `text` as std::from_chars does, except that a number too small for a double is read as
+// zero. Returns an error, and leaves `value` as it was, if the text is no number, or one too large, or if
+// something follows it.
+std::errc read(std::string_view text, double& value);
+
+}  // namespace by_c_library
 
 }  // namespace impact_damper

@@ -254,67 +254,52 @@ bool parse_json(const std::string& text, Json& root, JsonProblems& problems) {
   return Json::sax_parse(text, &builder);
 }
 
-// Each read_into returns whether `value` is allowed, and only then writes the target.
-bool read_into(double& target, const Json& value, const NumberRange& range) {
-  if (!value.is_number()) return false;
-  const double number = value.get<double>();
-  if (!range.allows(number)) return false;
-  target = number;
-  return true;
+// Each reads `value` into the target if it is allowed, and returns nothing. Else the target keeps what it
+// has, and the result describes what is allowed.
+using Wanted = std::optional<std::string>;
+
+Wanted read_into(double& target, const Json& value, const NumberRange& range,
+                 std::string_view kind = "a number") {
+  if (!value.is_number() || !range.allows(value.get<double>())) return range.describe(kind);
+  target = value.get<double>();
+  return {};
 }
 
-bool read_into(std::optional<double>& target, const Json& value, const NumberRange& range) {
-  if (value.is_null()) {
-    target.reset();
-    return true;
-  }
+Wanted read_into(std::optional<double>& target, const Json& value, const NumberRange& range) {
   double number = 0;
-  if (!read_into(number, value, range)) return false;
-  target = number;
-  return true;
+  if (!value.is_null())
+    if (Wanted wanted = read_into(number, value, range, "null or a number")) return wanted;
+  target = value.is_null() ? std::nullopt : std::optional(number);
+  return {};
 }
 
-bool read_into(std::int64_t& target, const Json& value, const NumberRange& range) {
+Wanted read_into(std::int64_t& target, const Json& value, const NumberRange& range) {
   // The parser stores non-negative numbers as unsigned, so the upper half must be rejected here.
-  if (!value.is_number_integer()) return false;
-  if (value.is_number_unsigned() &&
-      value.get<std::uint64_t>() > std::uint64_t{std::numeric_limits<std::int64_t>::max()}) {
-    return false;
+  const bool is_too_large =
+      value.is_number_unsigned() &&
+      value.get<std::uint64_t>() > std::uint64_t{std::numeric_limits<std::int64_t>::max()};
+  if (value.is_number_integer() && !is_too_large && range.allows(value.get<std::int64_t>())) {
+    target = value.get<std::int64_t>();
+    return {};
   }
-  const auto number = value.get<std::int64_t>();
-  if (!range.allows(number)) return false;
-  target = number;
-  return true;
-}
-
-bool read_into(std::string& target, const Json& value, const TextRule& rule) {
-  if (!value.is_string() || !rule.allows(value.get_ref<const std::string&>())) return false;
-  target = value.get_ref<const std::string&>();
-  return true;
-}
-
-bool read_into(bool& target, const Json& value, const NumberRange&) {
-  if (!value.is_boolean()) return false;
-  target = value.get<bool>();
-  return true;
-}
-
-// Returns a description of what is allowed, by the type of the target.
-std::string wanted(const double&, const NumberRange& range, const Json&) {
-  return range.describe("a number");
-}
-std::string wanted(const std::optional<double>&, const NumberRange& range, const Json&) {
-  return range.describe("null or a number");
-}
-std::string wanted(const std::int64_t&, const NumberRange& range, const Json& given) {
-  std::string words = range.describe("a whole number");
-  if (!given.is_number_float()) return words;
-  const auto number = given.get<double>();  // 3.0 and 3e0 are whole, but not written so
+  const std::string wanted = range.describe("a whole number");
+  if (!value.is_number_float()) return wanted;
+  const auto number = value.get<double>();  // 3.0 and 3e0 are whole, but not written so
   const bool is_whole = number == std::floor(number) && std::abs(number) < 0x1p63 && range.allows(number);
-  return is_whole ? words + ", written without point or exponent" : words;
+  return is_whole ? wanted + ", written without point or exponent" : wanted;
 }
-std::string wanted(const std::string&, const TextRule& rule, const Json&) { return rule.describe(); }
-std::string wanted(bool, const NumberRange&, const Json&) { return "true or false"; }
+
+Wanted read_into(std::string& target, const Json& value, const TextRule& rule) {
+  if (!value.is_string() || !rule.allows(value.get_ref<const std::string&>())) return rule.describe();
+  target = value.get_ref<const std::string&>();
+  return {};
+}
+
+Wanted read_into(bool& target, const Json& value, const NumberRange&) {
+  if (!value.is_boolean()) return "true or false";
+  target = value.get<bool>();
+  return {};
+}
 
 [[noreturn]] void reject_length(const std::string& name, const FileKind& kind, const std::string& given) {
   throw InputError(name, {{"", "too long, allowed are " + std::to_string(kind.most_bytes) + " bytes for a " +
@@ -468,7 +453,8 @@ template <class Target>
 requires(!Enumeration<Target>) bool ObjectReader::optional(std::string_view key, Target& target,
                                                            RuleFor<Target> rule) {
   const Json* const value = find(key);
-  return !value || read_into(target, *value, rule) || wrong(key, wanted(target, rule, *value), *value);
+  const Wanted wanted = value ? read_into(target, *value, rule) : std::nullopt;
+  return !wanted || wrong(key, *wanted, *value);
 }
 template bool ObjectReader::optional(std::string_view, double&, NumberRange);
 template bool ObjectReader::optional(std::string_view, std::optional<double>&, NumberRange);
@@ -490,9 +476,10 @@ bool ObjectReader::optional(std::string_view key, std::vector<Element>& target, 
   std::vector<Element> elements(value->size());
   bool all_read = true;
   for (std::size_t i = 0; i < elements.size(); ++i) {
-    if (read_into(elements[i], (*value)[i], rule)) continue;
+    const Wanted wanted = read_into(elements[i], (*value)[i], rule);
+    if (!wanted) continue;
     all_read = false;
-    reject(key, i, "must be " + wanted(elements[i], rule, (*value)[i]) + ", got " + described((*value)[i]));
+    reject(key, i, "must be " + *wanted + ", got " + described((*value)[i]));
   }
   if (all_read) target = std::move(elements);
   return all_read;

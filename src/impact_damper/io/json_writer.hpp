@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"
 
@@ -124,6 +125,7 @@ class JsonWriter {
     }
   }
   void value(std::int64_t number) { append_number(text_, number); }
+  void value(Enumeration auto enumerator) { value(name_of(enumerator)); }
   void value(std::same_as<bool> auto flag) { text_ += flag ? "true" : "false"; }
   void value(std::string_view text) {  // of one line: the readers allow no control character
     text_ += '"';

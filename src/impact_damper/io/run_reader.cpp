@@ -8,7 +8,7 @@
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/sha256.hpp"
 #include "impact_damper/engine_options.hpp"
-#include "impact_damper/engines/compatibility.hpp"
+#include "impact_damper/engines/checked.hpp"
 #include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/run_columns.hpp"

@@ -4,7 +4,7 @@
 
 #include "impact_damper/base/sha256.hpp"
 #include "impact_damper/engine_options.hpp"
-#include "impact_damper/io/csv_table.hpp"
+#include "impact_damper/io/csv.hpp"
 #include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/provenance.hpp"
 #include "impact_damper/io/run_columns.hpp"
@@ -58,24 +58,16 @@ void add_columns(CsvTable& table, const Owner& owner, bool of_list, const std::s
   });
 }
 
-template <class Value>
-void write_option(JsonWriter& out, const OptionInfo& option, const Value& value) {
-  if constexpr (std::is_enum_v<Value>) {
-    out.field(option.name, name_of(value));
-  } else {
-    if constexpr (std::is_same_v<Value, std::optional<double>>)
-      if (!value && !option.in_every_file) return;
-    out.field(option.name, value);
-  }
-}
-
 }  // namespace
 
 void write_engine(JsonWriter& out, const Engine& engine) {
   out.open_object("engine", Layout::one_line);
   out.field("name", name_of(engine));
-  for_each_option(engine,
-                  [&](const OptionInfo& option, const auto& value) { write_option(out, option, value); });
+  for_each_option(engine, [&]<class Value>(const OptionInfo& option, const Value& value) {
+    if constexpr (std::is_same_v<Value, std::optional<double>>)
+      if (!value && !option.in_every_file) return;
+    out.field(option.name, value);
+  });
   out.close();
 }
 
@@ -105,8 +97,7 @@ std::string run_text(const Run& run, const std::optional<Scales>& scales) {
   write_scene_fields(out, run.scene);
   out.close();
   write_engine(out, run.engine);
-  out.field("stop_reason", name_of(run.stop_reason));
-  out.field("end_time", run.end_time);
+  out.fields("stop_reason", run.stop_reason, "end_time", run.end_time);
   if (scales) write_units(out, *scales);
   write_columns(out, run, has_list(run));
   write_provenance(out);

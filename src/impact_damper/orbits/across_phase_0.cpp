@@ -1,14 +1,12 @@
-#include "impact_damper/orbits/across_phase_0.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "impact_damper/engines/compatibility.hpp"
 #include "impact_damper/motion/wall.hpp"
+#include "impact_damper/orbits/corrector.hpp"
 #include "impact_damper/orbits/variational_equations.hpp"
 
-namespace impact_damper {
+namespace impact_damper::corrector {
 namespace {
 
 // The state after one event, and its derivative by the state before.
@@ -127,4 +125,4 @@ std::optional<Crossing> across_phase_0(const Scene& scene, const Engine& engine,
   return {};
 }
 
-}  // namespace impact_damper
+}  // namespace impact_damper::corrector

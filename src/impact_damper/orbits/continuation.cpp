@@ -4,7 +4,6 @@
 #include <optional>
 #include <utility>
 
-#include "impact_damper/engines/compatibility.hpp"
 #include "impact_damper/math/complex.hpp"
 #include "impact_damper/math/dense.hpp"
 #include "impact_damper/orbits/corrector.hpp"
@@ -188,31 +187,26 @@ class EventsOfStep {
   // The solution within the step at which value_of() is zero, by the Illinois variant of regula falsi.
   template <class Value>
   std::optional<Solution> zero_of(Value&& value_of, double at_low, double at_high) const {
-    double low = 0, high = step_.length;
+    struct End {
+      double at, value;
+    };
+    End low{0, at_low}, high{step_.length, at_high};
+    const End* last = nullptr;  // the end that moved last
     std::optional<Solution> found;
-    int side = 0;
-    for (int i = 0; i < 80 && high - low > 1e-14; ++i) {
-      const double s = low + (high - low) * (at_low / (at_low - at_high));
+    for (int i = 0; i < 80 && high.at - low.at > 1e-14; ++i) {
+      const double s = low.at + (high.at - low.at) * (low.value / (low.value - high.value));
       Solved at = orbits_.between(step_.from, step_.tangent, s);
       if (!at) return {};
       const double value = value_of(*at);
       found = *std::move(at);
       if (value == 0) break;
-      if (value * at_low > 0) {
-        const double moved = s - low;
-        low = s;
-        at_low = value;
-        if (side == 1) at_high /= 2;
-        side = 1;
-        if (!(moved > 1e-14)) break;
-      } else {
-        const double moved = high - s;
-        high = s;
-        at_high = value;
-        if (side == -1) at_low /= 2;
-        side = -1;
-        if (!(moved > 1e-14)) break;
-      }
+      const bool is_low = value * low.value > 0;
+      End &moves = is_low ? low : high, &stays = is_low ? high : low;
+      const double way = std::fabs(s - moves.at);
+      moves = {s, value};
+      if (last == &moves) stays.value /= 2;
+      last = &moves;
+      if (!(way > 1e-14)) break;
     }
     return found;
   }

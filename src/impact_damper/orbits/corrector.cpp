@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "impact_damper/orbits/across_phase_0.hpp"
 #include "impact_damper/orbits/variational_equations.hpp"
 
 namespace impact_damper::corrector {
@@ -44,7 +43,7 @@ Point point_at(StateVector s, double parameter) {
 namespace {
 
 // Takes an iterate, reached by a linear step from `before`, and the plane across the events that passed phase
-// 0 in that step (across_phase_0.hpp). False if it cannot.
+// 0 in that step (across_phase_0). False if it cannot.
 bool carry_across(const Equation& equation, const Point& before, Point& p, Plane& plane) {
   const std::optional<Crossing> crossing =
       across_phase_0(equation.scene, equation.engine, state_at(before), state_at(p));
@@ -67,28 +66,6 @@ const StateVector& by_parameter(const PoincareImage& image, Parameter parameter)
   return parameter == Parameter::force_frequency ? image.by_frequency : image.by_amplitude;
 }
 
-}  // namespace
-
-// In whole periods an idle damper keeps y + x and y' + x', and its row of w is redundant. (M13.28) takes the
-// place of that row: y + x does not change.
-Matrix bordered(const Equation& equation, const PoincareImage& image, const Point& last) {
-  const std::size_t n = image.by_state.size();
-  Matrix a = image.by_state;
-  for (std::size_t i = 0; i < n; ++i) {
-    a[i][i] -= 1;
-    a[i].push_back(by_parameter(image, equation.parameter)[i]);
-  }
-  for (const std::size_t damper : equation.free_to_rest(image)) {
-    std::vector<double>& row = a[index_of_w(damper)];
-    std::fill(row.begin(), row.end(), 0.0);
-    row[0] = row[index_of_y(damper)] = 1;
-  }
-  a.push_back(last);
-  return a;
-}
-
-namespace {
-
 // Indices of the state's components without those of idle dampers, and A restricted to these. Idle dampers do
 // not act on the others, and each adds two multipliers that are 1, or -1 for odd n.
 std::vector<std::size_t> moving_in(const PoincareImage& image) {
@@ -109,14 +86,6 @@ Matrix derivative_of_moving(const PoincareImage& image) {
   }
   return all;
 }
-
-}  // namespace
-
-Multipliers multipliers_of(const PoincareImage& image) {
-  return impact_damper::multipliers_of(derivative_of_moving(image));
-}
-
-namespace {
 
 // The residual of an iterate.
 struct Residual {
@@ -152,6 +121,28 @@ std::optional<Point> newton_step(const Equation& equation, const Solution& at, c
 }
 
 }  // namespace
+
+// In whole periods an idle damper keeps y + x and y' + x', and its row of w is redundant. (M13.28) takes the
+// place of that row: y + x does not change.
+Matrix bordered(const Equation& equation, const PoincareImage& image, const Point& last) {
+  const std::size_t n = image.by_state.size();
+  Matrix a = image.by_state;
+  for (std::size_t i = 0; i < n; ++i) {
+    a[i][i] -= 1;
+    a[i].push_back(by_parameter(image, equation.parameter)[i]);
+  }
+  for (const std::size_t damper : equation.free_to_rest(image)) {
+    std::vector<double>& row = a[index_of_w(damper)];
+    std::fill(row.begin(), row.end(), 0.0);
+    row[0] = row[index_of_y(damper)] = 1;
+  }
+  a.push_back(last);
+  return a;
+}
+
+Multipliers multipliers_of(const PoincareImage& image) {
+  return impact_damper::multipliers_of(derivative_of_moving(image));
+}
 
 // A step after which the residual is at least twice the least so far is halved, at most six times.
 Solved solve(const Equation& equation, const Point& before, const Point& start, const Plane& plane) {

@@ -1,5 +1,3 @@
-#include "impact_damper/orbits/nearest_miss.hpp"
-
 #include <algorithm>
 #include <vector>
 

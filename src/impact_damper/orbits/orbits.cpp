@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "impact_damper/engines/compatibility.hpp"
+#include "impact_damper/engines/checked.hpp"
 #include "impact_damper/orbits/corrector.hpp"
 
 namespace impact_damper {

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <functional>
 #include <span>
 #include <utility>
 
-#include "impact_damper/engines/compatibility.hpp"
 #include "impact_damper/math/elementary.hpp"
-#include "impact_damper/orbits/nearest_miss.hpp"
+#include "impact_damper/orbits/masses_along_run.hpp"
 #include "impact_damper/orbits/variational_equations.hpp"
 
 namespace impact_damper {
@@ -57,6 +58,17 @@ SceneState state_of(const StateVector& s) {
   state.dampers.clear();
   for (std::size_t i = 2; i < s.size(); i += 2) state.dampers.push_back({s[i], s[i + 1]});
   return state;
+}
+
+double Multiplier::modulus() const { return std::sqrt(re * re + im * im); }
+
+Multipliers multipliers_of(const Matrix& matrix) {
+  Multipliers all;
+  for (const std::complex<double>& value : eigenvalues_of(matrix))
+    all.push_back({value.real(), value.imag()});
+  std::ranges::stable_sort(all, std::greater<>(),
+                           [](const Multiplier& m) { return m.re * m.re + m.im * m.im; });
+  return all;
 }
 
 Scene scene_of_map(Scene scene, int half_periods) {

@@ -8,7 +8,6 @@
 #include <utility>
 #include <variant>
 
-#include "impact_damper/engines/compatibility.hpp"
 #include "impact_damper/math/dense.hpp"
 #include "impact_damper/motion/contact.hpp"
 #include "impact_damper/motion/contact_without_modes.hpp"

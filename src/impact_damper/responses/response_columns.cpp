@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "impact_damper/analysis/design.hpp"
-#include "impact_damper/io/csv_table.hpp"
+#include "impact_damper/io/csv.hpp"
 #include "impact_damper/responses/response_fields.hpp"
 #include "impact_damper/responses/response_file.hpp"
 

@@ -99,11 +99,7 @@ class JsonFields {
   template <class Value, class... Allowed>
   bool field(std::string_view name, Value& value, const Allowed&... allowed) {
     if (in_) return (may_be_missing_ || in_->require(name)) && in_->optional(name, value, allowed...);
-    if constexpr (Enumeration<Value>) {
-      out_->field(name, name_of(value));
-    } else {
-      out_->field(name, value);
-    }
+    out_->field(name, value);
     return true;
   }
 

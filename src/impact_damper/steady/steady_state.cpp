@@ -9,7 +9,7 @@
 #include "impact_damper/base/floating_point.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/text.hpp"
-#include "impact_damper/engines/compatibility.hpp"
+#include "impact_damper/engines/checked.hpp"
 #include "impact_damper/engines/recorded.hpp"
 #include "impact_damper/math/elementary.hpp"
 

@@ -38,7 +38,7 @@
 #include "impact_damper/base/floating_point.hpp"
 #include "impact_damper/engines/cem_engine.hpp"
 #include "impact_damper/engines/checked.hpp"
-#include "impact_damper/math/scalar.hpp"
+#include "impact_damper/math/elementary.hpp"
 
 namespace impact_damper {
 

@@ -2,10 +2,16 @@
 #pragma once
 
 #include <variant>
+#include <vector>
 
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {
+
+// Conflicts between a scene and an engine's options, each of which is allowed by itself. One entry per
+// offending field, of the scene or of the engine, as problems_of(Scene). Both must be free of problems by
+// themselves, and the engine complete: without a time step cem is not compared.
+std::vector<Problem> incompatibilities_of(const Scene& scene, const Engine& engine);
 
 // A scene and an engine that are valid and go together, the engine's options complete. Only checked() makes
 // one.

@@ -12,7 +12,7 @@
 #include "impact_damper/engines/checked.hpp"
 #include "impact_damper/engines/observer.hpp"
 #include "impact_damper/engines/run_tracker.hpp"
-#include "impact_damper/math/scalar.hpp"
+#include "impact_damper/math/elementary.hpp"
 #include "impact_damper/motion/contact_without_modes.hpp"
 #include "impact_damper/motion/contact_work.hpp"
 #include "impact_damper/motion/flight.hpp"

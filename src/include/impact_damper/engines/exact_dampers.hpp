@@ -19,7 +19,7 @@
 #include "impact_damper/base/floating_point.hpp"
 #include "impact_damper/engines/checked.hpp"
 #include "impact_damper/engines/engine_of_dampers.hpp"
-#include "impact_damper/math/scalar.hpp"
+#include "impact_damper/math/elementary.hpp"
 #include "impact_damper/motion/contact_without_modes.hpp"
 #include "impact_damper/motion/contact_work.hpp"
 #include "impact_damper/motion/joint_contact.hpp"

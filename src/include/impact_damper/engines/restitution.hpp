@@ -20,7 +20,7 @@
 #include "impact_damper/engines/checked.hpp"
 #include "impact_damper/engines/observer.hpp"
 #include "impact_damper/engines/run_tracker.hpp"
-#include "impact_damper/math/scalar.hpp"
+#include "impact_damper/math/elementary.hpp"
 #include "impact_damper/motion/flight.hpp"
 #include "impact_damper/motion/sticking.hpp"
 

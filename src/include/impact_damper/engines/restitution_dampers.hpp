@@ -18,7 +18,7 @@
 #include "impact_damper/engines/chattering.hpp"
 #include "impact_damper/engines/checked.hpp"
 #include "impact_damper/engines/engine_of_dampers.hpp"
-#include "impact_damper/math/scalar.hpp"
+#include "impact_damper/math/elementary.hpp"
 #include "impact_damper/motion/impact_law.hpp"
 #include "impact_damper/motion/sticking.hpp"
 

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cmath>
+#include <concepts>
+#include <limits>
 #include <type_traits>
 
 #include "impact_damper/math/elementary_kernels.hpp"
@@ -12,63 +14,57 @@ namespace impact_damper {
 
 template <class Real>
 SinCos<Real> sin_cos(const Real& angle) {
-  if constexpr (std::is_same_v<Real, double>) {
+  using std::cos, std::sin;
+  if constexpr (std::is_same_v<Real, double>)
     return elementary::sin_cos(angle);
-  } else {
-    using std::cos, std::sin;
+  else
     return {sin(angle), cos(angle)};
-  }
 }
 
 template <class Real>
 Real exponential(const Real& x) {
-  if constexpr (std::is_same_v<Real, double>) {
+  using std::exp;
+  if constexpr (std::is_same_v<Real, double>)
     return elementary::exponential(x);
-  } else {
-    using std::exp;
+  else
     return exp(x);
-  }
 }
 
 template <class Real>
 Real exponential_minus_1(const Real& x) {
-  if constexpr (std::is_same_v<Real, double>) {
+  using std::expm1;
+  if constexpr (std::is_same_v<Real, double>)
     return elementary::exponential_minus_1(x);
-  } else {
-    using std::expm1;
+  else
     return expm1(x);
-  }
 }
 
 template <class Real>
 Real logarithm(const Real& x) {
-  if constexpr (std::is_same_v<Real, double>) {
+  using std::log;
+  if constexpr (std::is_same_v<Real, double>)
     return elementary::logarithm(x);
-  } else {
-    using std::log;
+  else
     return log(x);
-  }
 }
 
 // The angle in [-pi, pi] of the point (x, y).
 template <class Real>
 Real angle_of(const Real& y, const Real& x) {
-  if constexpr (std::is_same_v<Real, double>) {
+  using std::atan2;
+  if constexpr (std::is_same_v<Real, double>)
     return elementary::angle_of(y, x);
-  } else {
-    using std::atan2;
+  else
     return atan2(y, x);
-  }
 }
 
 template <class Real>
 Real half_turn() {
-  if constexpr (std::is_same_v<Real, double>) {
+  using std::acos;
+  if constexpr (std::is_same_v<Real, double>)
     return 2 * elementary::quarter_turn;
-  } else {
-    using std::acos;
+  else
     return acos(Real(-1));
-  }
 }
 
 template <class Real>
@@ -102,5 +98,29 @@ inline double whole_above(double x) {
   const double whole = double(static_cast<long long>(x));
   return whole < x ? whole + 1 : whole;
 }
+
+// The requirements of the closed-form engines on their number type. The program uses double; tests and the
+// bench use wider numbers as a reference, and one that counts its operations.
+//
+// A real number with rounding errors of at most `epsilon` and an order, made from double and convertible to
+// it. Its elementary functions are found by argument-dependent lookup.
+template <class T>
+concept Scalar = std::numeric_limits<T>::is_specialized && std::constructible_from<T, double> &&
+    requires(const T& a, const T& b) {
+  {T(a + b)};
+  {T(a - b)};
+  {T(a * b)};
+  {T(a / b)};
+  {T(-a)};
+  { a < b } -> std::convertible_to<bool>;
+  { a == b } -> std::convertible_to<bool>;
+  {double(a)};
+  { square_root(a) } -> std::convertible_to<T>;
+  { exponential(a) } -> std::convertible_to<T>;
+  { exponential_minus_1(a) } -> std::convertible_to<T>;
+  { logarithm(a) } -> std::convertible_to<T>;
+  { angle_of(a, b) } -> std::convertible_to<T>;
+  { sin_cos(a) } -> std::convertible_to<SinCos<T>>;
+};
 
 }  // namespace impact_damper

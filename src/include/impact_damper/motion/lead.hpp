@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "impact_damper/math/scalar.hpp"
+#include "impact_damper/math/elementary.hpp"
 #include "impact_damper/motion/forcing.hpp"
 
 namespace impact_damper {

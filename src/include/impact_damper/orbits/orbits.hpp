@@ -11,7 +11,6 @@
 
 #include "impact_damper/base/enumeration.hpp"
 #include "impact_damper/base/errors.hpp"
-#include "impact_damper/orbits/multipliers.hpp"
 #include "impact_damper/orbits/poincare_map.hpp"
 
 namespace impact_damper {

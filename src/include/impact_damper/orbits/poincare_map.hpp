@@ -18,7 +18,6 @@
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/math/dense.hpp"
 #include "impact_damper/motion/state.hpp"
-#include "impact_damper/orbits/orbit_impact.hpp"
 #include "impact_damper/run.hpp"
 #include "impact_damper/steady/steady_state.hpp"
 
@@ -30,6 +29,24 @@ using StateMatrix = Matrix;
 StateVector vector_of(const SceneState& s);
 // The inverse: s has as many components as a state of the scene, with its one damper or all of its list.
 SceneState state_of(const StateVector& s);
+
+// A Floquet multiplier of an orbit, an eigenvalue of its monodromy matrix: the factor by which a small
+// departure from the orbit along the eigenvector grows in each period.
+struct Multiplier {
+  double re = 0, im = 0;
+  double modulus() const;  // |re + i im|
+};
+using Multipliers = std::vector<Multiplier>;
+// The eigenvalues of a matrix, the largest modulus first; of a conjugate pair the one with im > 0 first.
+Multipliers multipliers_of(const Matrix& matrix);
+
+// An impact of a periodic motion.
+struct OrbitImpact {
+  double time = 0;  // since the beginning of the run, where the force's phase is 0
+  Wall wall = Wall::left;
+  double speed = 0;         // |y'| just before
+  std::int32_t damper = 0;  // its number in the scene
+};
 
 struct PoincareImage {
   SceneState state{};    // H^n(s)

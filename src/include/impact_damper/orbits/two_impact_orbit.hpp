@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "impact_damper/motion/state.hpp"
-#include "impact_damper/orbits/multipliers.hpp"
+#include "impact_damper/orbits/poincare_map.hpp"
 #include "impact_damper/scene.hpp"
 
 namespace impact_damper {
