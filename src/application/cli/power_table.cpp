@@ -4,8 +4,8 @@
 #include <map>
 #include <optional>
 
+#include "files.hpp"
 #include "impact_damper/io/json_writer.hpp"
-#include "output.hpp"
 
 namespace impact_damper::cli {
 namespace {
