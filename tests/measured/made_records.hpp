@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "application/measured/record.hpp"
+#include "application/measured/reduction.hpp"
 #include "impact_damper/units.hpp"
 #include "plain_integration.hpp"
 

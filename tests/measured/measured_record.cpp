@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "application/measured/record.hpp"
+#include "application/measured/reduction.hpp"
 #include "impact_damper/base/errors.hpp"
 
 using namespace impact_damper;

@@ -53,22 +53,23 @@ void Arguments::reject_overwriting(const std::string& option, const std::optiona
   }
 }
 
-std::optional<double> Arguments::number(const std::string& option, NumberRange range) {
+template <typename Parse>
+std::invoke_result_t<Parse, std::string_view> Arguments::parsed(const std::string& option, NumberRange range,
+                                                                Parse parse, const char* kind) {
   const std::optional<std::string> given_text = text(option);
   if (!given_text) return std::nullopt;
-  const std::optional<double> value = parse_number(*given_text);
+  const auto value = parse(*given_text);
   if (value && range.allows(*value)) return value;
-  reject(option, "must be " + range.describe("a finite number") + ", got " + in_quotes(*given_text));
+  reject(option, filled("must be {}, got {}", range.describe(kind), in_quotes(*given_text)));
   return std::nullopt;
 }
 
+std::optional<double> Arguments::number(const std::string& option, NumberRange range) {
+  return parsed(option, range, parse_number, "a finite number");
+}
+
 std::optional<std::int64_t> Arguments::whole_number(const std::string& option, NumberRange range) {
-  const std::optional<std::string> given_text = text(option);
-  if (!given_text) return std::nullopt;
-  const std::optional<std::int64_t> value = parse_integer(*given_text);
-  if (value && range.allows(*value)) return value;
-  reject(option, "must be " + range.describe("a whole number") + ", got " + in_quotes(*given_text));
-  return std::nullopt;
+  return parsed(option, range, parse_integer, "a whole number");
 }
 
 std::optional<std::size_t> Arguments::word(const std::string& option,
@@ -77,7 +78,7 @@ std::optional<std::size_t> Arguments::word(const std::string& option,
   if (!given_text) return std::nullopt;
   const auto found = std::ranges::find(words, *given_text);
   if (found != words.end()) return std::size_t(found - words.begin());
-  reject(option, "must be one of " + joined(words, ", ") + ", got " + in_quotes(*given_text));
+  reject(option, filled("must be one of {}, got {}", joined(words, ", "), in_quotes(*given_text)));
   return std::nullopt;
 }
 
@@ -85,18 +86,6 @@ std::optional<std::size_t> Arguments::required_word(const std::string& option,
                                                     const std::vector<std::string_view>& words) {
   if (!given(option)) reject(option, "must be given: " + listed(words, "or"));
   return word(option, words);
-}
-
-void Arguments::read(const std::string& option, double& value, NumberRange range) {
-  value = number(option, range).value_or(value);
-}
-
-void Arguments::read(const std::string& option, std::optional<double>& value, NumberRange range) {
-  if (const auto given_value = number(option, range)) value = given_value;
-}
-
-void Arguments::read(const std::string& option, std::int64_t& value, NumberRange range) {
-  value = whole_number(option, range).value_or(value);
 }
 
 void Arguments::reject(const std::string& option, const std::string& what) {
@@ -117,16 +106,6 @@ std::vector<std::string_view> parts_of(std::string_view text, char between) {
     begin = end + 1;
   }
   return parts;
-}
-
-std::string with_values(std::string_view pattern, const std::vector<std::string>& values) {
-  std::string text;
-  for (const std::string& value : values) {
-    const std::size_t place = pattern.find("{}");
-    text.append(pattern.substr(0, place)).append(value);
-    pattern.remove_prefix(place + 2);
-  }
-  return text.append(pattern);
 }
 
 std::optional<std::vector<double>> parse_numbers(std::string_view text, char between) {

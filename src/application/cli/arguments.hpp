@@ -10,7 +10,6 @@
 #include <initializer_list>
 #include <map>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -54,10 +53,14 @@ class Arguments {
     const std::optional<std::size_t> index = word(option, words_of(allowed));
     return index ? allowed.begin()[*index] : otherwise;
   }
-  // Sets `value` if the option is given and valid.
-  void read(const std::string& option, double& value, NumberRange range = {});
-  void read(const std::string& option, std::optional<double>& value, NumberRange range = {});
-  void read(const std::string& option, std::int64_t& value, NumberRange range = {});
+  // Sets `value`, a double, an optional one or a std::int64_t, if the option is given and valid.
+  template <typename Value>
+  void read(const std::string& option, Value& value, NumberRange range = {}) {
+    if constexpr (std::is_integral_v<Value>)
+      value = whole_number(option, range).value_or(value);
+    else if (const auto given_value = number(option, range))
+      value = *given_value;
+  }
   // Returns the file of an option, or rejects that it is not given: "must be given: WHAT".
   std::optional<std::string> required_file(const std::string& option, const std::string& what);
   // Returns the files of an argument and those after the named arguments, which are no option with many
@@ -76,6 +79,11 @@ class Arguments {
   void finish() const;
 
  private:
+  // Returns the number that parse() finds in the text of an option. `kind`: "a number", for messages.
+  template <typename Parse>
+  std::invoke_result_t<Parse, std::string_view> parsed(const std::string& option, NumberRange range,
+                                                       Parse parse, const char* kind);
+
   std::map<std::string, std::vector<std::string>> options_;
   std::vector<std::string> more_;
   std::vector<Problem> problems_;
@@ -100,32 +108,6 @@ std::vector<std::string_view> texts_of(const Elements& elements, Text text) {
   texts.reserve(std::size(elements));
   for (const auto& element : elements) texts.push_back(std::invoke(text, element));
   return texts;
-}
-
-// A text with a place {} for each of these values.
-template <class... Values>
-struct Pattern {
-  std::string_view text;
-  consteval Pattern(const char* literal) : text(literal) {
-    std::size_t places = 0;
-    for (std::size_t at = 0; (at = text.find("{}", at)) != std::string_view::npos; at += 2) ++places;
-    if (places != sizeof...(Values)) throw std::invalid_argument("a place for each value");
-  }
-};
-std::string with_values(std::string_view pattern, const std::vector<std::string>& values);
-template <class Value>
-std::string value_text(const Value& value) {
-  if constexpr (std::is_floating_point_v<Value>)
-    return number_text(value);
-  else if constexpr (std::is_integral_v<Value>)
-    return std::to_string(value);
-  else
-    return std::string(value);
-}
-// Returns the pattern, a literal, with the values in its places: texts, and numbers by number_text().
-template <class... Values>
-std::string filled(Pattern<std::type_identity_t<Values>...> pattern, const Values&... values) {
-  return with_values(pattern.text, {value_text(values)...});
 }
 
 // Reads the numbers A:B:..., or with another character between. Absent unless all are finite numbers.

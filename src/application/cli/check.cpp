@@ -8,11 +8,11 @@
 #include "application/reproduction/scene_runs.hpp"
 #include "application/sweeps/plan.hpp"
 #include "application/sweeps/sweep_table.hpp"
+#include "commands.hpp"
 #include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/responses/response_file.hpp"
-#include "scene_arguments.hpp"
 
 namespace impact_damper::cli {
 namespace {

@@ -50,13 +50,15 @@ std::string entry(const Manifest& manifest, const std::string& note) {
   if (provenance().version == manifest.version && !provenance().tree.empty())
     published += ", commit " + std::string(provenance().commit) + ", " +
                  set_swhid("swh:1:dir:" + std::string(provenance().tree));
-  std::string text = "@misc{impact-damper-" + manifest.version + ",\n";
-  text += "  author = {" + joined(authors, " and ") + "},\n";
-  text += "  title = {" + braced(manifest.title) + "},\n";
-  text += "  howpublished = {" + published + "},\n";
-  text += "  year = {" + std::to_string(manifest.year) + "}";
-  if (!note.empty()) text += ",\n  note = {" + note + "}";
-  return text + "\n}\n";
+  return filled(R"(@misc{impact-damper-{},
+  author = {{}},
+  title = {{}},
+  howpublished = {{}},
+  year = {{}}{}
+}
+)",
+                manifest.version, joined(authors, " and "), braced(manifest.title), published, manifest.year,
+                note.empty() ? "" : ",\n  note = {" + note + "}");
 }
 
 // Returns a label beside its values, of which there may be several.
@@ -87,8 +89,8 @@ std::string made_from(const Manifest& manifest, const Stamped& stamped) {
     shown = "build/" + target;
   }
 
-  std::string text = comment("Figure " + figure.number + " of " + manifest.title + " " + manifest.version +
-                             ": " + figure.title);
+  std::string text = comment(
+      filled("Figure {} of {} {}: {}", figure.number, manifest.title, manifest.version, figure.title));
   text += labelled("stamp", {stamp_of(stamped)});
   text += labelled("picture", {shown});
   if (table) text += labelled("table", {table->content.file, "by the " + table->engine + " engine"});
@@ -111,12 +113,11 @@ std::string why_not(const Manifest& manifest, const Stamp& stamp, const std::str
       known.push_back(std::string_view(table.content.sha256).substr(0, 8));
   }
   const bool of_another = stamp.version && *stamp.version != manifest.version;
-  std::string text = "must be on a figure of " + file + ", which is of version " + manifest.version;
-  text += of_another ? " (version " + *stamp.version + " has a manifest of its own), got "
-                     : " (what was drawn from other data, such as one's own scene, is in none), got ";
-  text += in_quotes(stamp.digits);
-  if (of_another) text += " of version " + *stamp.version;
-  return text + did_you_mean(stamp.digits, known);
+  return filled("must be on a figure of {}, which is of version {} ({}), got {}{}{}", file, manifest.version,
+                of_another ? filled("version {} has a manifest of its own", *stamp.version)
+                           : "what was drawn from other data, such as one's own scene, is in none",
+                in_quotes(stamp.digits), of_another ? " of version " + *stamp.version : "",
+                did_you_mean(stamp.digits, known));
 }
 
 // Returns a manifest without figures: program and paper by paper/facts.json as it was when the program was
@@ -163,11 +164,13 @@ int cite(Arguments& arguments) {
 
   std::string text;
   if (const std::string_view version = provenance().version; version != manifest.version)
-    text += comment("The manifest " + file + " is of version " + manifest.version + ", this program of " +
-                    std::string(version) + ".");
+    text += comment(
+        filled("The manifest {} is of version {}, this program of {}.", file, manifest.version, version));
   if (stamp && stamp->version && *stamp->version != manifest.version)
-    text += comment("The stamp is of version " + *stamp->version + ": what it marks has the same bytes in " +
-                    manifest.version + ", the rest of the figure may have changed.");
+    text +=
+        comment(filled("The stamp is of version {}: what it marks has the same bytes in {}, the rest of the "
+                       "figure may have changed.",
+                       *stamp->version, manifest.version));
   std::string note;
   for (const Stamped& each : figures) {
     text += made_from(manifest, each);

@@ -5,8 +5,8 @@
 #include <iostream>
 
 #include "application/measured/comparison.hpp"
+#include "commands.hpp"
 #include "drawing.hpp"
-#include "scene_arguments.hpp"
 
 namespace impact_damper::cli {
 namespace {

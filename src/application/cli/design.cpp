@@ -1,14 +1,24 @@
 // `design`: finds the lightest secondary mass, and its clearance, with which a decay is over in time within
-// tolerances.
+// tolerances; or, with --dampers, several dampers for a range of amplitudes.
 #include <algorithm>
 #include <cmath>
 
 #include "application/sweeps/damper_set_design.hpp"
 #include "application/sweeps/lightest_design.hpp"
-#include "scene_arguments.hpp"
+#include "commands.hpp"
+#include "impact_damper/io/json_parts.hpp"
 
 namespace impact_damper::cli {
 namespace {
+
+SceneFile scene_with_one_damper(Arguments& arguments) {
+  SceneFile file = scene_of(arguments, Stops::ignored);
+  require_one_damper(file.scene, scene_name_of(arguments));
+  reject_options_beside_units(arguments, file, "");
+  return file;
+}
+
+// --- The lightest damper ----------------------------------------------------------------------------------
 
 // Reads NAME=W or NAME=W%.
 std::optional<SampledNumber> tolerance_of(Arguments& arguments, const std::string& text,
@@ -40,33 +50,26 @@ DesignRange range_of(Arguments& arguments, const std::string& option, DesignRang
   return otherwise;
 }
 
-struct Asked {
-  DesignQuestion question;
-  bool dimensionless = false;
-
-  std::string unit(Dimension each) const { return std::string(unit_of(each, !dimensionless)); }
-  std::string text(double value, Dimension each) const { return with_unit(readable(value), unit(each)); }
-};
+std::string text_in_unit(const DesignQuestion& question, double value, Dimension dimension) {
+  return with_unit(readable(value), unit_of(dimension, question.in_units));
+}
 
 // Returns the numbers that may have a tolerance, by their names in a scene in units.
-std::vector<Variable> tolerable(bool dimensionless) {
+std::vector<Variable> tolerable(bool in_units) {
   SceneFile any;
   any.in_units.emplace();
   std::vector<Variable> variables = variables_of(any);
   std::erase_if(variables, [&](const Variable& each) {
     return each.name.starts_with("exciting_") || each.name.starts_with("secondary_d") ||
-           (dimensionless && (each.name == "mass" || each.name == "stiffness" || each.name == "damping"));
+           (!in_units && (each.name == "mass" || each.name == "stiffness" || each.name == "damping"));
   });
   return variables;
 }
 
-Asked asked_of(Arguments& arguments) {
-  Asked asked;
-  const SceneFile file = scene_of(arguments, Stops::ignored);
-  require_one_damper(file.scene, scene_name_of(arguments));
-  reject_options_beside_units(arguments, file, "");
-  DesignQuestion& question = asked.question;
-  asked.dimensionless = !file.in_units;
+DesignQuestion question_of(Arguments& arguments) {
+  DesignQuestion question;
+  const SceneFile file = scene_with_one_damper(arguments);
+  question.in_units = file.in_units.has_value();
   question.scene = with_defaults(file.in_units ? *file.in_units : with_unit_scales(file.scene));
   question.engine = engine_of(arguments);
   if (const auto from = arguments.number("--from", above(0))) question.scene.initial_displacement = *from;
@@ -82,19 +85,19 @@ Asked asked_of(Arguments& arguments) {
   std::vector<std::string> tolerances = arguments.texts("--tolerance");
   if (tolerances.empty()) tolerances = {"restitution=0.1", "clearance=10%"};
   for (const std::string& text : tolerances)
-    if (const auto tolerance = tolerance_of(arguments, text, tolerable(asked.dimensionless)))
+    if (const auto tolerance = tolerance_of(arguments, text, tolerable(question.in_units)))
       question.tolerances.push_back(*tolerance);
   arguments.read("--neighbours", question.neighbours, within(100, 1e6));
   arguments.read("--seed", question.seed, within(0, 1e15));
-  return asked;
+  return question;
 }
 
 std::string percent(double share, int digits) { return rounded_text(100 * share, digits) + " %"; }
 
-std::string tolerances_text(const Asked& asked) {
+std::string tolerances_text(const DesignQuestion& question) {
   std::vector<std::string> texts;
-  for (const SampledNumber& each : asked.question.tolerances) {
-    const std::string_view unit = asked.dimensionless ? "" : each.variable.unit;
+  for (const SampledNumber& each : question.tolerances) {
+    const std::string_view unit = question.in_units ? each.variable.unit : "";
     texts.push_back(
         filled("{} +-{}", each.variable.name,
                each.relative ? percent(each.width, 3) : with_unit(rounded_text(each.width, 3), unit)));
@@ -102,27 +105,25 @@ std::string tolerances_text(const Asked& asked) {
   return joined(texts, ", ");
 }
 
-std::string table_of(const Asked& asked, const DesignAnswer& answer) {
-  const DesignQuestion& question = asked.question;
-  const std::string time = asked.unit(Dimension::time);
+std::string table_of(const DesignQuestion& question, const DesignAnswer& answer) {
+  const auto unit = [&](Dimension each) { return std::string(unit_of(each, question.in_units)); };
+  const std::string time = unit(Dimension::time);
   Rows rows{{"within", "secondary mass", "clearance", "nominal", percent(question.share, 3), "slowest",
              filled("in time, of {}", question.neighbours), "impact speed", "wall force"},
-            {time, asked.unit(Dimension::mass), asked.unit(Dimension::length), time, time, time,
-             "and 95 % interval", asked.unit(Dimension::velocity), asked.unit(Dimension::force)}};
+            {time, unit(Dimension::mass), unit(Dimension::length), time, time, time, "and 95 % interval",
+             unit(Dimension::velocity), unit(Dimension::force)}};
   for (const FoundDesign& each : answer.designs) {
     const DesignCheck& check = each.check;
     const auto known = [&](const std::optional<double>& number) {
       return number ? readable(*number) : "> " + readable(longest_followed * question.time);
     };
-    rows.push_back({readable(each.time), number_text(each.design.secondary_mass),
-                    number_text(each.design.clearance), known(check.nominal_time), known(check.time_of_share),
-                    known(check.slowest),
-                    filled("{}, {} to {}", check.in_time, rounded_text(100 * check.share.low, 4),
-                           percent(check.share.high, 4)),
-                    readable(check.largest_impact_speed),
-                    check.largest_wall_force
-                        ? readable(force_in_unit(*check.largest_wall_force, question, asked.dimensionless))
-                        : "-"});
+    rows.push_back(
+        {readable(each.time), number_text(each.design.secondary_mass), number_text(each.design.clearance),
+         known(check.nominal_time), known(check.time_of_share), known(check.slowest),
+         filled("{}, {} to {}", check.in_time, rounded_text(100 * check.share.low, 4),
+                percent(check.share.high, 4)),
+         readable(check.largest_impact_speed),
+         check.largest_wall_force ? readable(force_in_unit(*check.largest_wall_force, question)) : "-"});
   }
   return aligned(rows);
 }
@@ -142,33 +143,33 @@ std::string verdict_on(const DesignQuestion& question, const DesignCheck& check)
 }
 
 // Returns a sentence on the walls that the forces of the table are for.
-std::string walls_in_words(const Asked& asked, const DesignAnswer& answer) {
+std::string walls_in_words(const DesignQuestion& question, const DesignAnswer& answer) {
   if (!answer.designs.front().check.largest_wall_force) return "";
-  const SceneInUnits& scene = asked.question.scene;
+  const SceneInUnits& scene = question.scene;
   const double ratio = SceneDamper{}.wall_stiffness;
   const double stiffness = *scene.damper().contact_stiffness;
-  const std::string text = filled(
-      "Wall forces are those of walls of {}",
-      asked.text(asked.dimensionless ? stiffness / *scene.stiffness : stiffness, Dimension::stiffness));
+  const std::string text =
+      filled("Wall forces are those of walls of {}",
+             text_in_unit(question, question.in_units ? stiffness : stiffness / *scene.stiffness,
+                          Dimension::stiffness));
   if (stiffness != ratio * *scene.stiffness) return text + ".\n";
   return filled(
       "{}, {} times the primary stiffness: an assumption, the program's\ndefault. They go as its square "
       "root: give {} of your own walls.\n",
-      text, readable(ratio), asked.dimensionless ? "--wall-stiffness" : "contact_stiffness");
+      text, readable(ratio), question.in_units ? "contact_stiffness" : "--wall-stiffness");
 }
 
 // Returns a sentence on viscous damping alone, if its decay takes at most 1.5 times the time asked for.
-std::string viscous_in_words(const Asked& asked, const DesignAnswer& answer) {
+std::string viscous_in_words(const DesignQuestion& question, const DesignAnswer& answer) {
   constexpr double nearly = 1.5;
   const auto& time = answer.time_of_viscous_damping;
-  if (!time || *time > nearly * asked.question.time) return "";
+  if (!time || *time > nearly * question.time) return "";
   return filled("Viscous damping alone, without a secondary mass, takes {}.\n",
-                asked.text(*time, Dimension::time));
+                text_in_unit(question, *time, Dimension::time));
 }
 
 // Returns advice on the bounds that decided the result.
-std::string advice_on(const Asked& asked, const DesignAnswer& answer) {
-  const DesignQuestion& question = asked.question;
+std::string advice_on(const DesignQuestion& question, const DesignAnswer& answer) {
   const Design& design = answer.designs.front().design;
   std::string text;
   if (!answer.met) text += "A heavier secondary mass, more time or narrower tolerances may do.\n";
@@ -178,52 +179,207 @@ std::string advice_on(const Asked& asked, const DesignAnswer& answer) {
     text += "The clearance is the least of its range: a narrower one may do better.\n";
   if (design.clearance == question.clearance.most) {
     const auto failing = failing_clearance(question.amplitude, *question.scene.damper().restitution);
-    text += filled("The clearance is the widest of its range: a wider one may do better{}.\n",
-                   failing ? filled("; with {} impacts fail at {}", asked.text(*failing, Dimension::length),
-                                    asked.text(question.amplitude, Dimension::length))
-                           : "");
+    text += filled(
+        "The clearance is the widest of its range: a wider one may do better{}.\n",
+        failing ? filled("; with {} impacts fail at {}", text_in_unit(question, *failing, Dimension::length),
+                         text_in_unit(question, question.amplitude, Dimension::length))
+                : "");
   }
   return text;
 }
 
-std::string text_of(const Asked& asked, const DesignAnswer& answer) {
-  const DesignQuestion& question = asked.question;
+std::string text_of(const DesignQuestion& question, const DesignAnswer& answer) {
   const auto range = [&](const DesignRange& each, Dimension dimension) {
-    return readable(each.least) + " to " + asked.text(each.most, dimension);
+    return readable(each.least) + " to " + text_in_unit(question, each.most, dimension);
   };
   const std::string head =
       filled("{} to below {} within {} in {} of all cases with {}\n",
-             asked.text(std::abs(*question.scene.initial_displacement), Dimension::length),
-             asked.text(question.amplitude, Dimension::length), asked.text(question.time, Dimension::time),
-             percent(question.share, 3), tolerances_text(asked)) +
+             text_in_unit(question, std::abs(*question.scene.initial_displacement), Dimension::length),
+             text_in_unit(question, question.amplitude, Dimension::length),
+             text_in_unit(question, question.time, Dimension::time), percent(question.share, 3),
+             tolerances_text(question)) +
       filled("searched: secondary mass {}, clearance {}\n\n", range(question.secondary_mass, Dimension::mass),
              range(question.clearance, Dimension::length));
   if (answer.designs.empty())
     return head +
            filled(
                "No design was found. The heaviest secondary mass takes longer than {} with each clearance.\n",
-               asked.text(longest_followed * question.time, Dimension::time));
-  const std::string table = table_of(asked, answer) + '\n';
-  const std::string verdict = answer.met ? verdict_on(question, answer.designs.front().check)
-                                         : filled(
-                                               "No design was found. The heaviest secondary mass is soonest "
-                                               "with this clearance, within {}.\n",
-                                               asked.text(answer.designs.front().time, Dimension::time));
-  return head + table + walls_in_words(asked, answer) + verdict + viscous_in_words(asked, answer) +
-         advice_on(asked, answer);
+               text_in_unit(question, longest_followed * question.time, Dimension::time));
+  const std::string table = table_of(question, answer) + '\n';
+  const std::string verdict = answer.met
+                                  ? verdict_on(question, answer.designs.front().check)
+                                  : filled(
+                                        "No design was found. The heaviest secondary mass is soonest "
+                                        "with this clearance, within {}.\n",
+                                        text_in_unit(question, answer.designs.front().time, Dimension::time));
+  return head + table + walls_in_words(question, answer) + verdict + viscous_in_words(question, answer) +
+         advice_on(question, answer);
 }
+
+// --- Several dampers for a range of amplitudes ------------------------------------------------------------
+
+struct Asked {
+  SceneFile file;
+  DamperSetQuestion question;
+  double mass = 1;  // of the primary mass: kg, or 1
+};
+
+// Reads the only tolerances allowed, restitution=W and clearance=W%.
+void read_tolerances(Arguments& arguments, DamperSetQuestion& question) {
+  for (const std::string& text : arguments.texts("--tolerance")) {
+    const std::size_t equals = text.find('=');
+    const std::string name = text.substr(0, equals);
+    std::string width = equals == std::string::npos ? "" : text.substr(equals + 1);
+    const bool percent = width.ends_with('%');
+    if (percent) width.pop_back();
+    const auto value = parse_number(width);
+    if (name == "restitution" && !percent && value && *value >= 0)
+      question.restitution_off = *value;
+    else if (name == "clearance" && percent && value && *value >= 0)
+      question.clearance_off = *value / 100;
+    else
+      arguments.reject("--tolerance",
+                       "must be restitution=W or clearance=W% with --dampers, got " + in_quotes(text));
+  }
+}
+
+Asked asked_of(Arguments& arguments) {
+  Asked asked;
+  asked.file = scene_with_one_damper(arguments);
+  for (const char* option : {"--within", "--share", "--clearance", "--neighbours", "--seed", "--write-plan"})
+    if (arguments.given(option)) arguments.reject(option, "is not for several dampers, --dampers");
+  for (const Option& option : engine_options())
+    if (arguments.given(option.name))
+      arguments.reject(option.name, "is not for --dampers, whose runs are those of the restitution engine");
+  const Scene& scene = asked.file.scene;
+  if (scene.force_amplitude != 0) arguments.reject("--dampers", "needs a free decay: the scene has a force");
+  DamperSetQuestion& question = asked.question;
+  const double length = scale_of(Dimension::length, asked.file.scales);
+  asked.mass = scale_of(Dimension::mass, asked.file.scales);
+  question.count = arguments.whole_number("--dampers", within(1, double(most_set_dampers))).value_or(1);
+  question.release = arguments.number("--from", above(0)).value_or(std::abs(scene.x0) * length);
+  if (question.release == 0 && !arguments.given("--from"))
+    arguments.reject("--from", "must be given: the scene has no initial displacement");
+  if (!arguments.given("--to")) arguments.reject("--to", "must be given");
+  question.to = arguments.number("--to", above(0)).value_or(question.release / 10);
+  question.upper = arguments.number("--upper", above(0)).value_or(0.9 * question.release);
+  question.mass_ratio =
+      arguments.number("--secondary-mass", above(0)).value_or(scene.damper().mass_ratio * asked.mass) /
+      asked.mass;
+  question.restitution = scene.damper().restitution;
+  question.damping_ratio = scene.damping_ratio;
+  read_tolerances(arguments, question);
+  return asked;
+}
+
+// Returns the scene with these dampers as the text of its file, in units if the question was.
+std::string scene_file_text(const Asked& asked, const DamperSet& set) {
+  const DamperSetQuestion& question = asked.question;
+  JsonWriter out("scene");
+  out.open_object(JsonWriter::Layout::lines);
+  out.field("description", filled("{} dampers for amplitudes from {} to {}", set.dampers.size(),
+                                  readable(question.release), readable(question.to)));
+  if (asked.file.in_units) {
+    SceneInUnits scene = *asked.file.in_units;
+    scene.dampers.clear();
+    scene.initial_displacement = question.release;
+    scene.initial_velocity.reset();
+    scene.until_seconds.reset();
+    scene.until_millimetres = question.to;
+    for (const SceneDamper& damper : set.dampers) {
+      DamperInUnits& each = scene.dampers.emplace_back();
+      each.secondary_mass = in_three_digits(damper.mass_ratio * asked.mass);
+      each.clearance = damper.clearance;
+      each.restitution = damper.restitution;
+    }
+    write_unit_fields(out, scene);
+  } else {
+    Scene scene;
+    scene.damping_ratio = question.damping_ratio;
+    scene.x0 = question.release;
+    scene.until_amplitude = question.to;
+    scene.dampers = set.dampers;
+    for (SceneDamper& damper : scene.dampers) damper.mass_ratio = in_three_digits(damper.mass_ratio);
+    write_scene_fields(out, scene);
+  }
+  out.close();
+  return out.finish() + '\n';
+}
+
+std::string text_of(const Asked& asked, const DamperSet& set) {
+  const DamperSetQuestion& question = asked.question;
+  const bool in_units = asked.file.in_units.has_value();
+  const std::string length = in_units ? " mm" : "", mass = in_units ? " kg" : "";
+  const auto least = [](const std::vector<double>& values) { return *std::ranges::min_element(values); };
+  std::string text = filled("released from {}{}, {}{} together, restitution {} +-{}, clearances +-{} %\n\n",
+                            readable(question.release), length, readable(question.mass_ratio * asked.mass),
+                            mass, readable(question.restitution), readable(question.restitution_off),
+                            readable(100 * question.clearance_off));
+  Rows rows{{"damper", "clearance", "mass"}, {"", in_units ? "mm" : "", in_units ? "kg" : ""}};
+  for (std::size_t j = 0; j < set.dampers.size(); ++j)
+    rows.push_back({std::to_string(j + 1), number_text(set.dampers[j].clearance),
+                    readable(set.dampers[j].mass_ratio * asked.mass)});
+  text += aligned(rows) + "\n";
+  rows = {{"amplitude", "loss factor", "", "dampers that are off", "", ""},
+          {in_units ? "mm" : "", "if they add", "run", "each at its worst, if they add", "mean",
+           filled("least of {}", set_draws)}};
+  for (std::size_t i = 0; i + 1 < set.edges.size(); ++i)
+    rows.push_back({readable(std::sqrt(set.edges[i] * set.edges[i + 1])), readable(set.expected[i]),
+                    readable(set.run.mean[i]), readable(set.worst[i]), readable(set.varied.mean[i]),
+                    readable(set.varied.low[i])});
+  text += aligned(rows) + "\n";
+  text += filled(
+      "From {} to {}{} the loss factor is {} or more, by the mean of {} releases; of {} sets whose "
+      "dampers are off by their mean {} or more, in the worst of them {}.\n",
+      readable(set.edges.front()), readable(set.edges.back()), length, readable(least(set.run.mean)),
+      set_releases, set_draws, readable(least(set.varied.mean)), readable(least(set.varied.low)));
+  if (set.one)
+    text += filled(
+        "One damper of that mass, designed in the same way, has a clearance of {}{} and a loss "
+        "factor of {} or more.\n",
+        readable(set.one->clearance), length, readable(set.one->least));
+  const auto without_mass = question.count - std::int64_t(set.dampers.size());
+  if (without_mass > 0) text += filled("Of {} clearances {} got no mass.\n", question.count, without_mass);
+  return text;
+}
+
+int design_dampers(Arguments& arguments) {
+  const Asked asked = asked_of(arguments);
+  const Threads threads = threads_of(arguments);
+  const auto output = output_of(arguments, "--output", {Format::json}, {scene_name_of(arguments)});
+  arguments.finish();
+  if (const auto problems = problems_of(asked.question); !problems.empty())
+    reject_as_options(problems, {{"release", "--from"},
+                                 {"upper", "--upper"},
+                                 {"to", "--to"},
+                                 {"mass_ratio", "--secondary-mass"},
+                                 {"count", "--dampers"},
+                                 {"clearance_off", "--tolerance"},
+                                 {"restitution_off", "--tolerance"}});
+  prepare_output(output);
+  DamperSet set;
+  {
+    ProgressOnStderr progress("design");
+    set = best_damper_set(asked.question, threads, std::ref(progress));
+  }
+  if (output) write_output(output, scene_file_text(asked, set));
+  if (!is_standard_output(output)) write_standard_output(text_of(asked, set));
+  return 0;
+}
+
+// --- The command ------------------------------------------------------------------------------------------
 
 int design(Arguments& arguments) {
   if (arguments.given("--dampers")) return design_dampers(arguments);
   if (arguments.given("--upper")) arguments.reject("--upper", "is for several dampers, --dampers");
-  const Asked asked = asked_of(arguments);
+  const DesignQuestion question = question_of(arguments);
   const Threads threads = threads_of(arguments);
   const std::string scene = scene_name_of(arguments);
   const auto output = output_of(arguments, "--output", {Format::json}, {scene}),
              plan = output_of(arguments, "--write-plan", {Format::json}, {scene});
   reject_same_output(arguments, "--write-plan", plan, "--output", output);
   arguments.finish();
-  if (const auto problems = problems_of(asked.question); !problems.empty())
+  if (const auto problems = problems_of(question); !problems.empty())
     reject_as_options(problems, {{"amplitude", "--to"},
                                  {"time", "--within"},
                                  {"share", "--share"},
@@ -235,12 +391,13 @@ int design(Arguments& arguments) {
   DesignAnswer answer;
   {
     ProgressOnStderr progress("design");
-    answer = saying_options([&] { return find_designs(asked.question, threads, std::ref(progress)); });
+    answer = saying_options([&] { return find_designs(question, threads, std::ref(progress)); });
   }
   if (plan && !answer.designs.empty())
-    write_output(plan, plan_text(check_plan(asked.question, answer.designs.front().design)));
-  if (output) write_output(output, design_text(asked.question, answer, asked.dimensionless));
-  if (!is_standard_output(output) && !is_standard_output(plan)) write_standard_output(text_of(asked, answer));
+    write_output(plan, plan_text(check_plan(question, answer.designs.front().design)));
+  if (output) write_output(output, design_text(question, answer));
+  if (!is_standard_output(output) && !is_standard_output(plan))
+    write_standard_output(text_of(question, answer));
   return answer.met && answer.designs.front().check.confirmed ? 0 : 1;
 }
 

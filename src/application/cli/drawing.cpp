@@ -12,10 +12,10 @@
 #include <cstring>
 #include <string_view>
 
+#include "files.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/provenance.hpp"
-#include "project_files.hpp"
 
 extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX has it declared by the user
 

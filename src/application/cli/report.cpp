@@ -3,8 +3,8 @@
 #include <map>
 
 #include "application/report/page.hpp"
+#include "commands.hpp"
 #include "drawing.hpp"
-#include "scene_arguments.hpp"
 
 namespace impact_damper::cli {
 namespace {

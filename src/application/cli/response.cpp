@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <iostream>
 #include <map>
+#include <tuple>
 
+#include "commands.hpp"
 #include "impact_damper/orbits/variational_equations.hpp"
 #include "impact_damper/responses/response_file.hpp"
-#include "scene_arguments.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -30,25 +31,15 @@ struct Request {
   std::optional<ParameterRange> range;  // orbits
   std::vector<SceneState> starts;
   double nudge = 0;  // sweep
-  SteadyRule sweep;
-  BasinRule basin;
-  BranchRule orbits;
-  Averaging averaging;
+  std::tuple<SteadyRule, BasinRule, BranchRule, Averaging> rules;
   Threads threads;
   Format format = Format::json;
   bool in_si = false;  // the CSV
   bool quiet = false;
 
   template <class Rule>
-  Rule& rule() {
-    if constexpr (std::is_same_v<Rule, BasinRule>)
-      return basin;
-    else if constexpr (std::is_same_v<Rule, BranchRule>)
-      return orbits;
-    else if constexpr (std::is_same_v<Rule, Averaging>)
-      return averaging;
-    else
-      return kind == Kind::basin ? basin.steady : sweep;
+  const Rule& rule() const {
+    return std::get<Rule>(rules);
   }
 };
 
@@ -63,10 +54,11 @@ struct OptionOfKinds {
 template <class Rule, class Value>
 OptionOfKinds number(const std::string& name, const std::string& type, const std::string& help,
                      std::vector<Kind> kinds, NumberRange range, Value Rule::*member) {
-  return {
-      {name, type, with_values(help, {value_text(Rule{}.*member)})},
-      std::move(kinds),
-      [=](Arguments& arguments, Request& asked) { arguments.read(name, asked.rule<Rule>().*member, range); }};
+  return {{name, type, with_values(help, {value_text(Rule{}.*member)})},
+          std::move(kinds),
+          [=](Arguments& arguments, Request& asked) {
+            arguments.read(name, std::get<Rule>(asked.rules).*member, range);
+          }};
 }
 
 const std::vector<OptionOfKinds>& options_of_kinds() {
@@ -130,9 +122,11 @@ const std::vector<OptionOfKinds>& options_of_kinds() {
 
 // Reads the numbers of the options that only some kinds have.
 void read_numbers(Arguments& arguments, Request& asked) {
+  auto& [steady, basin, orbits, averaging] = asked.rules;
+  if (asked.kind == Kind::basin) steady = basin.steady;
   for (const OptionOfKinds& each : options_of_kinds())
     if (each.read) each.read(arguments, asked);
-  asked.orbits.steady = asked.sweep;
+  basin.steady = orbits.steady = steady;
 }
 
 void reject_options_of_others(Arguments& arguments, Kind kind) {
@@ -173,17 +167,14 @@ Variables variables_of(const Scene& scene, const std::optional<Scales>& scales) 
   return variables;
 }
 
-// The number that --vary names, and the text of its values. number_of() rejects an unknown name.
-struct VariedNumber {
-  Variable variable;
-  std::optional<std::string> values;
-};
-std::optional<VariedNumber> number_of(Arguments& arguments, const std::string& text,
-                                      const Variables& variables) {
+// Returns the number that --vary names, and the text of its values. Rejects an unknown name.
+std::optional<std::pair<Variable, std::optional<std::string>>> number_of(Arguments& arguments,
+                                                                         const std::string& text,
+                                                                         const Variables& variables) {
   const auto names = texts_of(variables, &Variables::value_type::first);
   const auto varied = varied_of(arguments, text, names);
   if (!varied) return std::nullopt;
-  return VariedNumber{variables.find(names[varied->index])->second, varied->values};
+  return std::pair(variables.find(names[varied->index])->second, varied->values);
 }
 
 std::optional<Axis> axis_of(Arguments& arguments, const std::string& text, const Variables& variables) {
@@ -407,36 +398,39 @@ void warn_of(const LyapunovExponents& found, std::size_t numbers) {
 }
 
 Response swept(const Request& asked) {
+  const auto& rule = asked.rule<SteadyRule>();
   const Scene& scene = asked.file.scene;
   const Axis& axis = asked.axes[0];
   Progress progress("motions", 2 * axis.count * std::int64_t(asked.starts.size()));
-  const auto sweeps = sweep(scene, asked.engine, axis, asked.sweep, nudged(asked.starts, asked.nudge),
-                            asked.threads, std::ref(progress));
-  if (!asked.quiet) warn_of(sweeps, asked.sweep);
-  return SweepResponse{scene, asked.engine, asked.sweep, axis, sweeps};
+  const auto sweeps = sweep(scene, asked.engine, axis, rule, nudged(asked.starts, asked.nudge), asked.threads,
+                            std::ref(progress));
+  if (!asked.quiet) warn_of(sweeps, rule);
+  return SweepResponse{scene, asked.engine, rule, axis, sweeps};
 }
 
 Response mapped(const Request& asked) {
+  const auto& rule = asked.rule<BasinRule>();
   const Scene& scene = asked.file.scene;
   const Axis &first = asked.axes[0], &second = asked.axes[1];
   Progress progress("points", first.count * second.count);
-  const Basin map = basin(scene, asked.engine, first, second, asked.basin, asked.threads, std::ref(progress));
-  if (!asked.quiet) warn_of(map, asked.basin.steady);
-  return BasinResponse{scene, asked.engine, asked.basin, first, second, map};
+  const Basin map = basin(scene, asked.engine, first, second, rule, asked.threads, std::ref(progress));
+  if (!asked.quiet) warn_of(map, rule.steady);
+  return BasinResponse{scene, asked.engine, rule, first, second, map};
 }
 
 Response followed(const Request& asked) {
+  const auto& rule = asked.rule<BranchRule>();
   const Scene& scene = asked.file.scene;
   Progress progress("branches are followed", std::nullopt);
-  const Branches found = find_branches(scene, asked.engine, *asked.range, asked.orbits, asked.starts,
-                                       asked.threads, std::ref(progress));
-  if (!asked.quiet) warn_of(found, asked.orbits);
-  return orbits_response(scene, asked.engine, asked.orbits, *asked.range, found);
+  const Branches found =
+      find_branches(scene, asked.engine, *asked.range, rule, asked.starts, asked.threads, std::ref(progress));
+  if (!asked.quiet) warn_of(found, rule);
+  return orbits_response(scene, asked.engine, rule, *asked.range, found);
 }
 
 Response averaged(const Request& asked) {
   const Scene& scene = asked.file.scene;
-  const auto [periods, discard] = asked.averaging;
+  const auto [periods, discard] = asked.rule<Averaging>();
   Progress progress("periods", periods + discard);
   const LyapunovExponents found =
       lyapunov_exponents(scene, asked.engine, periods, discard, [&](std::int64_t done) {

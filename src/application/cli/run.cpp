@@ -1,13 +1,14 @@
 // `run`: simulates one scene with one engine and writes a run file, or several of an ensemble.
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <vector>
 
 #include "application/reproduction/scene_runs.hpp"
+#include "commands.hpp"
 #include "impact_damper/io/run_file.hpp"
 #include "impact_damper/simulate.hpp"
-#include "scene_arguments.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -17,20 +18,18 @@ constexpr const char* program = "impact-damper run";
 void read_sections(Arguments& arguments, Record& record) {
   const std::optional<std::string> list = arguments.text("--record");
   if (!list) return;
+  static const std::map<std::string_view, bool Record::*> sections{{"half_cycles", &Record::half_cycles},
+                                                                   {"impacts", &Record::impacts},
+                                                                   {"contacts", &Record::contacts},
+                                                                   {"energy", &Record::energy}};
   record.half_cycles = false;
   std::set<std::string_view> listed;
   for (const std::string_view word : parts_of(*list)) {
     if (!listed.insert(word).second)
       arguments.reject("--record", "must list each once, got " + in_quotes(*list));
-    if (word == "half_cycles")
-      record.half_cycles = true;
-    else if (word == "impacts")
-      record.impacts = true;
-    else if (word == "contacts")
-      record.contacts = true;
-    else if (word == "energy")
-      record.energy = true;
-    else if (word != "history") {
+    if (const auto found = sections.find(word); found != sections.end()) {
+      record.*found->second = true;
+    } else if (word != "history") {
       arguments.reject(
           "--record",
           "must be a list of half_cycles, impacts, contacts, energy, history with commas between, got " +

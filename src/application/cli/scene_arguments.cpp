@@ -1,10 +1,9 @@
-#include "scene_arguments.hpp"
-
 #include <algorithm>
 #include <functional>
 #include <iostream>
 #include <sstream>
 
+#include "commands.hpp"
 #include "impact_damper/engine_options.hpp"
 #include "impact_damper/units.hpp"
 

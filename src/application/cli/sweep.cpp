@@ -7,10 +7,10 @@
 
 #include "application/sweeps/plan.hpp"
 #include "application/sweeps/sweep_table.hpp"
+#include "commands.hpp"
 #include "impact_damper/base/sha256.hpp"
 #include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/io/provenance.hpp"
-#include "scene_arguments.hpp"
 
 namespace impact_damper::cli {
 namespace {
@@ -125,19 +125,16 @@ Plan plan_of(Arguments& arguments) {
   return read_plan(*file, find_named_file);
 }
 
-struct Part {
-  std::int64_t part = 1, parts = 1;
-};
-Part part_of(Arguments& arguments) {
+void read_part(Arguments& arguments, ShareHead& head) {
   const auto text = arguments.text("--part");
-  if (!text) return {};
-  if (const auto numbers = parts_of(*text, '/'); numbers.size() == 2) {
-    const auto part = parse_integer(numbers[0]), parts = parse_integer(numbers[1]);
-    if (part && parts && *part >= 1 && *part <= *parts && *parts <= most_parts) return {*part, *parts};
-  }
-  arguments.reject("--part",
-                   filled("must be K/N with 1 <= K <= N <= {}, got {}", most_parts, in_quotes(*text)));
-  return {};
+  if (!text) return;
+  const auto numbers = parts_of(*text, '/');
+  const auto part = parse_integer(numbers.front()), parts = parse_integer(numbers.back());
+  if (numbers.size() == 2 && part && parts && *part >= 1 && *part <= *parts && *parts <= most_parts)
+    head.part = *part, head.parts = *parts;
+  else
+    arguments.reject("--part",
+                     filled("must be K/N with 1 <= K <= N <= {}, got {}", most_parts, in_quotes(*text)));
 }
 
 // Returns version and commit; if the commit does not identify the source, the program's own digest as well.
@@ -250,14 +247,12 @@ int make_sweep(Arguments& arguments) {
     return 0;
   }
   ShareHead head;
-  const Part part = part_of(arguments);
+  read_part(arguments, head);
   const Threads threads = threads_of(arguments);
   const bool dry_run = arguments.flag("--dry-run");
   const auto output = arguments.file("--output");
   if (!output && !dry_run) arguments.reject("--output", "must be given: the table is written there");
   head.plan = plan_of(arguments);
-  head.part = part.part;
-  head.parts = part.parts;
   require_known_format(arguments, output);
   const std::string description = output.value_or("") + ".json";
   const std::vector<fs::path> inputs{arguments.text("PLAN").value_or(""), scene_name_of(arguments)};

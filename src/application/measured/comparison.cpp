@@ -75,9 +75,9 @@ void remark_on_what_is_left_out(Comparison& c) {
   const std::int64_t left_out = c.reduction.clipped + c.reduction.unclear;
   if (left_out <= std::int64_t(c.reduction.time.size())) return;
   c.remarks.push_back(
-      "More half cycles are left out, " + std::to_string(left_out) +
-      ", than are used: what disturbs the record, such as impacts that ring in an accelerometer, must be "
-      "filtered out of it first.");
+      filled("More half cycles are left out, {}, than are used: what disturbs the record, such as impacts "
+             "that ring in an accelerometer, must be filtered out of it first.",
+             left_out));
 }
 
 void remark_on_frequency(Comparison& c) {
@@ -85,43 +85,44 @@ void remark_on_frequency(Comparison& c) {
   const double f = c.reduction.frequency;
   if (f >= c.lowest_frequency * (1 - tolerance) && f <= c.highest_frequency * (1 + tolerance)) return;
   const double nearest = f < c.lowest_frequency ? c.lowest_frequency : c.highest_frequency;
-  c.remarks.push_back(
-      "The record oscillates at " + text_of(f) + " Hz, " + text_of(f / nearest) +
-      " times what the scene does: its sampling rate is wrong, or the scene's mass or stiffness. Loss "
-      "factors are per radian of the record's own oscillation, so a wrong sampling rate does not change "
-      "them" +
-      (c.record.quantity == MeasuredQuantity::acceleration
-           ? ", but it changes the displacements that are made of accelerations: nothing is fitted."
-           : "."));
+  c.remarks.push_back(filled(
+      "The record oscillates at {} Hz, {} times what the scene does: its sampling rate is wrong, or the "
+      "scene's mass or stiffness. Loss factors are per radian of the record's own oscillation, so a wrong "
+      "sampling rate does not change them{}.",
+      text_of(f), text_of(f / nearest),
+      c.record.quantity == MeasuredQuantity::acceleration
+          ? ", but it changes the displacements that are made of accelerations: nothing is fitted"
+          : ""));
 }
 
 void remark_on_fit(Comparison& c) {
   const DecayFit& fit = *c.fit;
   if (fit.normal_deviate > most_normal_deviate)
-    c.remarks.push_back("No decay in the searched range is like the record: chi square is " +
-                        text_of(fit.chi_square) + " with " + std::to_string(fit.degrees) +
-                        " degrees of freedom. The intervals mean nothing.");
+    c.remarks.push_back(
+        filled("No decay in the searched range is like the record: chi square is {} with {} "
+               "degrees of freedom. The intervals mean nothing.",
+               text_of(fit.chi_square), fit.degrees));
   for (const FittedParameter& each : fit.parameters) {
-    const std::string name(name_of(each.parameter));
+    const std::string_view name = name_of(each.parameter);
     const bool is_bounded_by_0 = each.parameter == FitParameter::damping_ratio;
     if (each.open_below && each.open_above) {
-      c.remarks.push_back("The record does not tell " + name + ": the whole searched range agrees with it.");
+      c.remarks.push_back(
+          filled("The record does not tell {}: the whole searched range agrees with it.", name));
     } else if (each.open_above || (each.open_below && !is_bounded_by_0)) {
-      c.remarks.push_back("The interval of " + name + " ends where the search did, at " +
-                          with_unit(text_of(each.open_above ? each.searched_to : each.searched_from),
-                                    unit_of(each.parameter)) +
-                          ": it may be longer on that side.");
+      c.remarks.push_back(
+          filled("The interval of {} ends where the search did, at {}: it may be longer on that side.", name,
+                 with_unit(text_of(each.open_above ? each.searched_to : each.searched_from),
+                           unit_of(each.parameter))));
     }
   }
   constexpr double strong = 0.9;
   for (std::size_t j = 0; j < fit.parameters.size(); ++j) {
     for (std::size_t k = 0; k < j; ++k) {
       if (std::abs(fit.correlation[j][k]) < strong) continue;
-      c.remarks.push_back(
-          std::string(name_of(fit.parameters[k].parameter)) + " and " +
-          std::string(name_of(fit.parameters[j].parameter)) +
-          " can hardly be distinguished: their correlation, in ln(1 - e) and logarithms, is " +
-          text_of(fit.correlation[j][k]) + ".");
+      c.remarks.push_back(filled(
+          "{} and {} can hardly be distinguished: their correlation, in ln(1 - e) and logarithms, is {}.",
+          name_of(fit.parameters[k].parameter), name_of(fit.parameters[j].parameter),
+          text_of(fit.correlation[j][k])));
     }
   }
 }
@@ -131,8 +132,9 @@ void remark_on_range(Comparison& c) {
   const double fold = fold_amplitude(value_of(scene, FitParameter::restitution)) * *scene.damper().clearance;
   if (c.reduction.amplitude.back() > fold)
     c.remarks.push_back(
-        "The record ends at " + text_of(c.reduction.amplitude.back()) + " mm, above the " + text_of(fold) +
-        " mm where impacts cease: from there restitution and clearance could be distinguished.");
+        filled("The record ends at {} mm, above the {} mm where impacts cease: from there "
+               "restitution and clearance could be distinguished.",
+               text_of(c.reduction.amplitude.back()), text_of(fold)));
 }
 
 void write_decays(JsonWriter& out, std::string_view name, const SimulatedDecays& decays) {
@@ -140,13 +142,9 @@ void write_decays(JsonWriter& out, std::string_view name, const SimulatedDecays&
   out.open_object("scene", Layout::one_line);
   write_unit_fields(out, decays.scene);
   out.close();
-  out.open_array("decays", Layout::lines);
-  for (const HalfCycles& each : decays.decays) {
-    out.open_object(Layout::one_line);
+  out.objects("decays", Layout::lines, decays.decays, [&](const HalfCycles& each) {
     out.fields("time", each.peak_time, "amplitude", each.amplitude);
-    out.close();
-  }
-  out.close();
+  });
   out.close();
 }
 
@@ -187,10 +185,10 @@ Comparison compared(const std::string& record_name, const MeasuredRecord& record
   remark_on_range(c);
   if (record.quantity == MeasuredQuantity::acceleration)
     c.remarks.push_back(
-        "Displacements are accelerations divided by the square of the local angular frequency; they may err "
-        "by " +
-        text_of(100 * dimensionless(scene).damper().mass_ratio) + " % (the mass ratio)" +
-        (c.fit ? ", for which the intervals do not allow." : "."));
+        filled("Displacements are accelerations divided by the square of the local angular frequency; they "
+               "may err by {} % (the mass ratio){}.",
+               text_of(100 * dimensionless(scene).damper().mass_ratio),
+               c.fit ? ", for which the intervals do not allow" : ""));
   return c;
 }
 
@@ -209,41 +207,31 @@ std::string comparison_text(const Comparison& c) {
              "error", r.error);
   out.object("loss_factor", Layout::lines, "amplitude", c.loss.amplitude, "time", c.loss.time, "eta",
              c.loss.eta);
-  out.open_array("bins", Layout::lines);
-  for (std::size_t k = 0; k < c.bins.size(); ++k) {
-    const LossBin& bin = c.bins[k];
+  out.objects("bins", Layout::lines, c.bins, [&](const LossBin& bin) {
+    const auto k = std::size_t(&bin - c.bins.data());
     std::optional<double> given, fitted, scatter;
     if (k < c.given.bins.size()) given = c.given.bins[k];
     if (c.fit) fitted = c.fit->loss[k], scatter = c.fit->scatter[k];
-    out.open_object(Layout::one_line);
     out.fields("upper", bin.upper, "lower", bin.lower, "half_cycles", bin.half_cycles, "eta", bin.loss,
                "relative_error", bin.error, "simulated", given, "fitted", fitted, "relative_scatter",
                scatter);
-    out.close();
-  }
-  out.close();
+  });
   out.object("scene_frequency", Layout::one_line, "lowest", c.lowest_frequency, "highest",
              c.highest_frequency);
   write_engine(out, c.engine);
   write_decays(out, "simulated", c.given);
   if (c.fit) {
     out.open_object("fit", Layout::lines);
-    out.open_array("parameters", Layout::lines);
-    for (const FittedParameter& each : c.fit->parameters) {
-      out.open_object(Layout::one_line);
+    const std::vector<FittedParameter>& parameters = c.fit->parameters;
+    out.objects("parameters", Layout::lines, parameters, [&](const FittedParameter& each) {
       out.fields("name", name_of(each.parameter), "unit", unit_of(each.parameter), "best", each.best, "low",
                  each.low, "high", each.high, "searched_from", each.searched_from, "searched_to",
                  each.searched_to, "open_below", each.open_below, "open_above", each.open_above);
-      out.close();
-    }
-    out.close();
-    out.open_array("correlation", Layout::lines);
-    for (std::size_t j = 0; j < c.fit->parameters.size(); ++j) {
-      out.open_object(Layout::one_line);
-      out.fields("name", name_of(c.fit->parameters[j].parameter), "with", c.fit->correlation[j]);
-      out.close();
-    }
-    out.close();
+    });
+    out.objects("correlation", Layout::lines, parameters, [&](const FittedParameter& each) {
+      out.fields("name", name_of(each.parameter), "with",
+                 c.fit->correlation[std::size_t(&each - parameters.data())]);
+    });
     out.fields("chi_square", c.fit->chi_square, "degrees_of_freedom", c.fit->degrees, "normal_deviate",
                c.fit->normal_deviate, "runs", c.fit->runs);
     out.close();

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "application/measured/decay_fit.hpp"
-#include "application/measured/record.hpp"
 #include "application/measured/reduction.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
 

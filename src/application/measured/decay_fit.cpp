@@ -248,7 +248,8 @@ SearchedRange searched_range(FitParameter parameter, const SceneInUnits& scene,
 // A box in the searched range, in fractions of it.
 struct Box {
   Vector low, high;
-  double at(std::size_t axis, double part) const { return low[axis] + (high[axis] - low[axis]) * part; }
+  double width(std::size_t axis) const { return high[axis] - low[axis]; }
+  double at(std::size_t axis, double part) const { return low[axis] + width(axis) * part; }
 };
 
 // --- The loss factor as a polynomial ----------------------------------------------------------------------
@@ -324,8 +325,7 @@ struct Emulator {
 
   static Vector within(const Box& box, const Vector& place) {  // z: from -1 to 1
     Vector z(place.size());
-    for (std::size_t j = 0; j < place.size(); ++j)
-      z[j] = 2 * (place[j] - box.low[j]) / (box.high[j] - box.low[j]) - 1;
+    for (std::size_t j = 0; j < place.size(); ++j) z[j] = 2 * (place[j] - box.low[j]) / box.width(j) - 1;
     return z;
   }
   static Vector terms_of(const Vector& z) {
@@ -386,8 +386,7 @@ struct DecaySampler {
           log_losses(simulated_half_cycles(decay, engine), *varied.damper().clearance, bins);
       constexpr std::int64_t often = 50;
       if (const std::int64_t all = ++done; all % often == 0)
-        tell("fitting, stage " + std::to_string(stage) + ", " + std::to_string(all) + " of " +
-             std::to_string(count) + " runs");
+        tell(filled("fitting, stage {}, {} of {} runs", stage, all, count));
     });
     runs += count;
     Points points;
@@ -436,10 +435,6 @@ struct Profiles {
   Matrix correlation;
 };
 
-double node_of(const Box& box, std::size_t axis, std::size_t node, std::size_t nodes) {
-  return box.low[axis] + (box.high[axis] - box.low[axis]) * double(node) / double(nodes - 1);
-}
-
 // Computes chi square on a grid over the region's box and returns its minimum, its profile along each axis
 // and the correlations. Outside of the region, no run was simulated and chi square counts as infinite.
 Profiles profiles_of(const Emulator& emulator, const Region& region, std::size_t nodes) {
@@ -454,7 +449,8 @@ Profiles profiles_of(const Emulator& emulator, const Region& region, std::size_t
   };
   Vector place(axes), values(all);
   for (std::size_t i = 0; i < all; ++i) {
-    for (std::size_t j = 0; j < axes; ++j) place[j] = node_of(region.box, j, index(i, j), nodes);
+    for (std::size_t j = 0; j < axes; ++j)
+      place[j] = region.box.low[j] + region.box.width(j) * double(index(i, j)) / double(nodes - 1);
     values[i] = region.is_near(place) ? emulator.chi_square(place) : std::numeric_limits<double>::infinity();
     if (values[i] < profiles.least) profiles.least = values[i], profiles.best = place;
     for (std::size_t j = 0; j < axes; ++j) {
@@ -519,7 +515,7 @@ Narrowed narrowed(const Profiles& profiles, const Box& box, double limit) {
   Narrowed next{box};
   for (std::size_t j = 0; j < box.low.size(); ++j) {
     const Interval interval = interval_of(profiles.of[j], limit);
-    const double width = box.high[j] - box.low[j];
+    const double width = box.width(j);
     constexpr double wider = 0.5, margin = 0.05;
     const bool below = interval.reaches_low && box.low[j] > 0,
                above = interval.reaches_high && box.high[j] < 1;
@@ -533,7 +529,7 @@ Narrowed narrowed(const Profiles& profiles, const Box& box, double limit) {
 Box half_about(const Vector& place, const Box& box) {
   Box half = box;
   for (std::size_t j = 0; j < place.size(); ++j) {
-    const double quarter = (box.high[j] - box.low[j]) / 4;
+    const double quarter = box.width(j) / 4;
     half.low[j] = std::max(box.low[j], place[j] - quarter);
     half.high[j] = std::min(box.high[j], place[j] + quarter);
   }
@@ -562,10 +558,11 @@ std::vector<Problem> problems_of_fit(const SceneInUnits& scene, const FitOptions
   const auto& chosen = options.parameters;
   for (auto each = chosen.begin(); each != chosen.end(); ++each)
     if (std::find(chosen.begin(), each, *each) != each)
-      problems.push_back({"parameters", "must be different, got " + in_quotes(name_of(*each)) + " twice"});
-  if (options.runs < 1) problems.push_back({"runs", "must be >= 1, got " + std::to_string(options.runs)});
+      problems.push_back(
+          {"parameters", filled("must be different, got {} twice", in_quotes(name_of(*each)))});
+  if (options.runs < 1) problems.push_back({"runs", filled("must be >= 1, got {}", options.runs)});
   if (!(options.level > 0))
-    problems.push_back({"level", "must be a number > 0, got " + number_text(options.level)});
+    problems.push_back({"level", filled("must be a number > 0, got {}", options.level)});
   if (scene.dampers.size() != 1) problems.push_back({"dampers", "must be one damper, without a list"});
   return problems;
 }
@@ -578,10 +575,9 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
   require_none(problems);
   const std::size_t count = options.parameters.size(), nodes = nodes_for(count);
   if (bins.size() < count + 1)
-    return {std::nullopt, "a fit of " + std::to_string(count) + " numbers needs " +
-                              std::to_string(count + 1) +
-                              " ranges of amplitude with a known loss factor, the record has " +
-                              std::to_string(bins.size())};
+    return {std::nullopt, filled("a fit of {} numbers needs {} ranges of amplitude with a known loss factor, "
+                                 "the record has {}",
+                                 count, count + 1, bins.size())};
   FitResult none{std::nullopt, "no decay in the searched range passes through the record's amplitudes"};
   DecaySampler sampler{scene, engine, reduction, bins, options, tell};
   for (const FitParameter each : options.parameters)
@@ -614,8 +610,7 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
     const Box& box = region.box;
     const Narrowed next = narrowed(profiles, box, profiles.least + generous);
     double part = 0;
-    for (std::size_t j = 0; j < count; ++j)
-      part = std::max(part, 1 - (next.box.high[j] - next.box.low[j]) / (box.high[j] - box.low[j]));
+    for (std::size_t j = 0; j < count; ++j) part = std::max(part, 1 - next.box.width(j) / box.width(j));
     region = {next.box, emulator, profiles.least + generous};
     if (next.was_too_small) region.limit.reset();
     constexpr double little = 0.2;

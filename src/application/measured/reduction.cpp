@@ -10,11 +10,137 @@
 
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"
+#include "impact_damper/io/csv.hpp"
+#include "impact_damper/io/json_reader.hpp"
 #include "impact_damper/math/dense.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/simulate.hpp"
 
 namespace impact_damper {
+
+// --- Records ----------------------------------------------------------------------------------------------
+
+namespace {
+
+struct Unit {
+  std::string_view heading;
+  double factor;  // to s, mm or mm/s^2
+  MeasuredQuantity quantity = MeasuredQuantity::displacement;
+};
+constexpr std::array<Unit, 2> time_units{{{"t_s", 1}, {"t_ms", 1e-3}}};
+constexpr double standard_gravity = 9806.65;  // mm/s^2
+constexpr std::array<Unit, 6> value_units{{{"x_mm", 1},
+                                           {"x_m", 1e3},
+                                           {"x_um", 1e-3},
+                                           {"a_m_per_s2", 1e3, MeasuredQuantity::acceleration},
+                                           {"a_mm_per_s2", 1, MeasuredQuantity::acceleration},
+                                           {"a_g", standard_gravity, MeasuredQuantity::acceleration}}};
+
+constexpr double most_value = 1e15;  // s, mm or mm/s^2: as in scenes
+constexpr std::size_t most_problems = 10;
+
+class Problems {
+ public:
+  void add(std::size_t line, const std::string& what) {
+    if (++count_ <= most_problems) first_.push_back({"line " + std::to_string(line), what});
+  }
+  void throw_if_any(const std::string& file) {
+    if (count_ == 0) return;
+    if (count_ > most_problems)
+      first_.push_back({"", filled("and {} more lines that are not valid", count_ - most_problems)});
+    throw InputError(file, first_);
+  }
+
+ private:
+  std::vector<Problem> first_;
+  std::size_t count_ = 0;
+};
+
+[[noreturn]] void reject(const std::string& name, const std::string& what) {
+  throw InputError(name, {{"", what}});
+}
+
+void require_samples(const std::string& name, const MeasuredRecord& record) {
+  if (record.time.size() < least_samples)
+    reject(name, filled("must have at least {} samples, got {}", least_samples, record.time.size()));
+}
+
+const Unit* unit_of(std::span<const Unit> units, const std::string& heading, Problems& problems) {
+  const auto found = std::ranges::find(units, std::string_view(heading), &Unit::heading);
+  if (found != units.end()) return &*found;
+  std::vector<std::string_view> known(units.size());
+  std::ranges::transform(units, known.begin(), &Unit::heading);
+  problems.add(1, filled("a column must be headed {}, got {}{}", listed(known, "or"), in_quotes(heading),
+                         did_you_mean(heading, known)));
+  return nullptr;
+}
+
+}  // namespace
+
+std::string_view unit_of(MeasuredQuantity quantity) {
+  return quantity == MeasuredQuantity::displacement ? "mm" : "mm/s^2";
+}
+
+MeasuredRecord read_measured_record(const std::filesystem::path& file) {
+  return parse_measured_record(file.string(), read_text(file, measured_kind));
+}
+
+MeasuredRecord parse_measured_record(const std::string& name, std::string_view text) {
+  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+  Problems problems;
+  CsvRows rows(text);
+  std::vector<std::string> cells;
+  MeasuredRecord record;
+  if (!rows.next(cells) || cells.size() != 2) {
+    problems.add(1, "must head two columns with their units, as in \"t_s,x_mm\", got " +
+                        in_quotes(text.substr(0, text.find('\n'))));
+    problems.throw_if_any(name);
+  }
+  const Unit* const time_unit = unit_of(time_units, cells[0], problems);
+  const Unit* const value_unit = unit_of(value_units, cells[1], problems);
+  problems.throw_if_any(name);
+  record.quantity = value_unit->quantity;
+  const auto limit = [&problems](std::size_t where, const Unit& unit, const std::optional<double>& number) {
+    if (number && !(std::abs(*number * unit.factor) <= most_value))
+      problems.add(where, filled("{} must be at most {} either way, got {}", unit.heading,
+                                 most_value / unit.factor, *number));
+  };
+  std::optional<double> last;
+  while (rows.next(cells)) {
+    if (cells.size() == 1 && cells[0].empty()) continue;  // an empty line
+    if (cells.size() != 2) {
+      problems.add(rows.line(), filled("must have 2 cells, got {}", cells.size()));
+      continue;
+    }
+    const auto time = parse_number(cells[0]), value = parse_number(cells[1]);
+    if (!time)
+      problems.add(rows.line(),
+                   filled("{} must be a number, got {}", time_unit->heading, in_quotes(cells[0])));
+    if (!value && !cells[1].empty())
+      problems.add(rows.line(), filled("{} must be a number, or empty where a sample is missing, got {}",
+                                       value_unit->heading, in_quotes(cells[1])));
+    limit(rows.line(), *time_unit, time);
+    limit(rows.line(), *value_unit, value);
+    if (!time) continue;
+    if (last && !(*time * time_unit->factor > *last * time_unit->factor))
+      problems.add(rows.line(), filled("{} must be larger than in the row before, {}, got {}",
+                                       time_unit->heading, *last, *time));
+    last = time;
+    if (!value) {
+      ++record.empty_cells;
+      continue;
+    }
+    record.time.push_back(*time * time_unit->factor);
+    record.value.push_back(*value * value_unit->factor);
+  }
+  problems.throw_if_any(name);
+  require_samples(name, record);
+  return record;
+}
+
+// --- Half cycles ------------------------------------------------------------------------------------------
+
 namespace {
 
 constexpr double half_window = std::numbers::pi / 4;  // half width of a fit's window, rad of the oscillation
@@ -224,9 +350,8 @@ class Limits {
     }
   }
   bool any(const IndexRange& range) const {
-    const auto begin = at_limit_.begin() + std::ptrdiff_t(range.first);
-    return std::find(begin, begin + std::ptrdiff_t(range.size()), true) !=
-           begin + std::ptrdiff_t(range.size());
+    const auto begin = at_limit_.begin();
+    return std::count(begin + std::ptrdiff_t(range.first), begin + std::ptrdiff_t(range.end), true) > 0;
   }
 
  private:
@@ -311,10 +436,7 @@ void find_middle_line(std::vector<Candidate>& all) {
 Reduction reduced(const std::string& name, const MeasuredRecord& record) {
   Reduction result;
   const std::vector<double>&time = record.time, &value = record.value;
-  const auto reject = [&](const std::string& what) { throw InputError(name, {{"", what}}); };
-  if (time.size() < least_samples)
-    reject("must have at least " + std::to_string(least_samples) + " samples, got " +
-           std::to_string(time.size()));
+  require_samples(name, record);
   std::vector<double> steps;
   for (std::size_t i = 1; i < time.size(); ++i) steps.push_back(time[i] - time[i - 1]);
   const double step = median_of(std::move(steps));
@@ -327,8 +449,8 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record) {
       extremes_of(time, without_spikes(value), above_noise * rough_noise(value));
   const auto require_half_cycles = [&](std::size_t count, const std::string& others) {
     if (count < least_half_cycles)
-      reject("must hold a free decay of at least " + std::to_string(least_half_cycles) +
-             " half cycles above the noise, got " + std::to_string(count) + others);
+      reject(name, filled("must hold a free decay of at least {} half cycles above the noise, got {}{}",
+                          least_half_cycles, count, others));
   };
   require_half_cycles(extremes.size(), "");
 
@@ -344,8 +466,8 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record) {
   };
   const double least_per_cycle = double(least_window) * half_turn<double>() / half_window;
   if (!(2 * median_of(intervals) / step >= least_per_cycle))
-    reject("must have at least " + number_text(std::ceil(least_per_cycle)) + " samples in a cycle, got " +
-           rounded_text(2 * median_of(intervals) / step, 3));
+    reject(name, filled("must have at least {} samples in a cycle, got {}", std::ceil(least_per_cycle),
+                        rounded_text(2 * median_of(intervals) / step, 3)));
 
   const Limits limits(value);
   const Samples samples{time, value, step};
@@ -407,10 +529,9 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record) {
     result.in_gaps += each.kind == Kind::in_gap;
     result.unclear += each.kind == Kind::unclear;
   }
-  require_half_cycles(good.size(), " (" + std::to_string(result.clipped) + " clipped or flat, " +
-                                       std::to_string(result.in_gaps) +
-                                       " at its ends or with samples missing, " +
-                                       std::to_string(result.unclear) + " unclear)");
+  require_half_cycles(good.size(),
+                      filled(" ({} clipped or flat, {} at its ends or with samples missing, {} unclear)",
+                             result.clipped, result.in_gaps, result.unclear));
   const double turns = double(good.back()->number - good.front()->number);
   result.frequency = turns / 2 / (good.back()->fit.time - good.front()->fit.time);
   // Adds the half cycles within gaps in which no extreme was found.

@@ -133,12 +133,6 @@ std::vector<SceneDamper> dampers_of(const DamperSetQuestion& question, const Cle
   return dampers;
 }
 
-std::vector<Run> runs_of(const DamperSetQuestion& question, const std::vector<SceneDamper>& dampers,
-                         const Threads& threads) {
-  return simulate_ensemble(scene_of_set(question, dampers), engine_of_sets(), Record{},
-                           {.members = set_releases, .threads = threads});
-}
-
 // Simulates sets drawn within the tolerances: each clearance by itself, the restitution, which is the
 // material's, of all alike.
 std::vector<Run> varied_runs(const DamperSetQuestion& question, const std::vector<SceneDamper>& dampers,
@@ -199,11 +193,12 @@ DamperSet best_by_runs(const DamperSetQuestion& question, const Threads& threads
   const int passes = question.count == 1 ? 1 : 3;  // the share of one is 1
   double best = -1;
   for (int pass = 0; pass < passes; ++pass) {
-    tell("masses, " + std::to_string(pass + 1) + " of " + std::to_string(passes));
+    tell(filled("masses, {} of {}", pass + 1, passes));
     const std::vector<SceneDamper> dampers =
         dampers_of(question, clearances, best_shares(clearances.columns).share);
-    const LossSpread run =
-        losses_between(runs_of(question, dampers, threads), in_releases(set.edges, question.release));
+    const std::vector<Run> runs = simulate_ensemble(scene_of_set(question, dampers), engine_of_sets(),
+                                                    Record{}, {.members = set_releases, .threads = threads});
+    const LossSpread run = losses_between(runs, in_releases(set.edges, question.release));
     const std::vector<double> expected = expected_of(dampers, exactly, 0);
     const double least = *std::ranges::min_element(run.mean);
     if (least > best) {
@@ -273,9 +268,8 @@ std::vector<Problem> problems_of(const DamperSetQuestion& question) {
   const auto demand = [&](std::string_view field, double value, double least, double most,
                           std::string_view why = "") {
     if (!(value >= least && value <= most))
-      problems.push_back({std::string(field), "must be >= " + number_text(least) +
-                                                  " and <= " + number_text(most) + std::string(why) +
-                                                  ", got " + number_text(value)});
+      problems.push_back(
+          {std::string(field), filled("must be >= {} and <= {}{}, got {}", least, most, why, value)});
   };
   demand("release", question.release, 1e-6, 1e6);
   demand("upper", question.upper, 0, 0.9 * question.release, ", nine tenths of the release");

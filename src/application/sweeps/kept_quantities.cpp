@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "impact_damper/analysis/design.hpp"
 #include "impact_damper/analysis/loss_factor.hpp"
@@ -126,7 +127,7 @@ using Number = std::optional<double>;
 template <auto find, auto number>
 Number one_of(RunFindings& found, double) {
   const auto& all = (found.*find)();
-  return all ? Number((*all).*number) : std::nullopt;
+  return all ? Number(std::invoke(number, *all)) : std::nullopt;
 }
 
 // (M15.5).
@@ -261,27 +262,21 @@ constexpr std::array<Quantity, 16> quantities{{
      .meaning = "largest |x| of the steady motion that the release leads to",
      .experiment = Experiment::steady,
      .better = least,
-     .value = [](RunFindings& found, double) -> Number {
-       if (!found.steady()) return std::nullopt;
-       return found.steady()->means->amplitude;
-     }},
+     .value =
+         one_of<&RunFindings::steady, [](const SteadyState& steady) { return steady.means->amplitude; }>},
     {.name = "steady_period",
      .dimension = count,
      .meaning = "its period in periods of the force; none if it is not periodic",
      .experiment = Experiment::steady,
-     .value = [](RunFindings& found, double) -> Number {
-       if (!found.steady() || !found.steady()->period) return std::nullopt;
-       return double(*found.steady()->period);
-     }},
+     .value = one_of<&RunFindings::steady, &SteadyState::period>},
     {.name = "impacts_per_period",
      .dimension = ratio,
      .meaning = "its impacts in a period of the force",
      .experiment = Experiment::steady,
-     .value = [](RunFindings& found, double) -> Number {
-       if (!found.steady()) return std::nullopt;
-       const SteadyState& steady = *found.steady();
-       return double(steady.impacts[0] + steady.impacts[1]) / double(steady.measured_periods);
-     }},
+     .value = one_of<&RunFindings::steady,
+                     [](const SteadyState& steady) {
+                       return double(steady.impacts[0] + steady.impacts[1]) / double(steady.measured_periods);
+                     }>},
     {.name = "worst_steady_amplitude",
      .dimension = length,
      .meaning = "largest steady |x| over the plan's frequencies, rising and falling; none if one motion is "
@@ -301,8 +296,7 @@ constexpr std::array<Quantity, 16> quantities{{
      .better = least,
      .value = [](RunFindings& found, double) -> Number {
        const std::vector<double>& exponents = found.exponents().exponents;
-       if (exponents.empty()) return std::nullopt;
-       return exponents[0];
+       return exponents.empty() ? std::nullopt : Number(exponents[0]);
      }},
 }};
 
@@ -337,20 +331,20 @@ QuantityReading read_quantity(std::string_view text) {
   if (found == quantities.end()) {
     std::vector<std::string_view> names(quantities.size());
     std::ranges::transform(quantities, names.begin(), &Quantity::name);
-    return {
-        {},
-        "must name a quantity (sweep --list-quantities), got " + in_quotes(text) + did_you_mean(name, names)};
+    return {{},
+            filled("must name a quantity (sweep --list-quantities), got {}{}", in_quotes(text),
+                   did_you_mean(name, names))};
   }
   KeptQuantity kept{found, {}};
   if (!found->at) {
     if (equals == std::string_view::npos) return {kept, {}};
-    return {{}, "must be " + std::string(name) + " without a number, got " + in_quotes(text)};
+    return {{}, filled("must be {} without a number, got {}", name, in_quotes(text))};
   }
   if (equals != std::string_view::npos) kept.at = parse_number(text.substr(equals + 1));
   if (kept.at && *kept.at > 0) return {kept, {}};
   return {{},
-          "must be " + std::string(name) + (*found->at == length ? "=A" : "=L") + " with a number > 0, got " +
-              in_quotes(text)};
+          filled("must be {}={} with a number > 0, got {}", name, *found->at == length ? "A" : "L",
+                 in_quotes(text))};
 }
 
 KeptNumbers none_kept(std::size_t count, const std::vector<Problem>& problems) {

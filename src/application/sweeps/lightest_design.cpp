@@ -103,8 +103,8 @@ class DesignSearch {
   std::optional<Place> first_of(const std::vector<double>& masses, double time) {
     const Plan plan = search_plan(question_, time, masses, clearances_);
     for (std::size_t m = 0; m < masses.size(); ++m) {
-      tell_("searched for " + rounded_text(time, 3) + " with a secondary mass of " +
-            rounded_text(masses[m], 3) + ", " + std::to_string(runs_) + " runs so far");
+      tell_(filled("searched for {} with a secondary mass of {}, {} runs so far", rounded_text(time, 3),
+                   rounded_text(masses[m], 3), runs_.load()));
       if (const auto best = soonest_of(plan, m * clearances_.size(), time)) return Place{m, *best};
     }
     return std::nullopt;
@@ -288,12 +288,11 @@ std::vector<Problem> problems_of(const DesignQuestion& question) {
          "must release the secondary mass at the left wall, because the clearance is to be found");
   const double from = std::abs(scene.initial_displacement.value_or(0));
   demand(question.amplitude > 0 && question.amplitude < from, "amplitude",
-         "must be > 0 and < the initial displacement, " + number_text(from) + ", got " +
-             number_text(question.amplitude));
-  demand(question.time > 0, "time", "must be > 0, got " + number_text(question.time));
+         filled("must be > 0 and < the initial displacement, {}, got {}", from, question.amplitude));
+  demand(question.time > 0, "time", filled("must be > 0, got {}", question.time));
   demand(question.share >= 0.5 && question.share <= 0.999, "share",
-         "must be >= 0.5 and <= 0.999, got " + number_text(question.share));
-  demand(question.neighbours >= 1, "neighbours", "must be >= 1, got " + std::to_string(question.neighbours));
+         filled("must be >= 0.5 and <= 0.999, got {}", question.share));
+  demand(question.neighbours >= 1, "neighbours", filled("must be >= 1, got {}", question.neighbours));
   if (!problems.empty()) return problems;
 
   const auto value_of = [&](const Variable& variable) -> DesignRange {
@@ -304,26 +303,25 @@ std::vector<Problem> problems_of(const DesignQuestion& question) {
   };
   demand(!question.tolerances.empty(), "tolerance", "at least one must be given");
   for (auto each = question.tolerances.begin(); each != question.tolerances.end(); ++each) {
-    const std::string name(each->variable.name);
+    const std::string& name = each->variable.name;
     const DesignRange value = value_of(each->variable);
     const auto width = [&](double about) {
       return each->relative ? each->width * std::abs(about) : each->width;
     };
     const double low = value.least - width(value.least), high = value.most + width(value.most);
-    demand(each->variable.range.allows(low) && each->variable.range.allows(high), "tolerance",
-           name + " must stay " + each->variable.range.describe("a number") + ", got " + number_text(low) +
-               " to " + number_text(high));
+    demand(
+        each->variable.range.allows(low) && each->variable.range.allows(high), "tolerance",
+        filled("{} must stay {}, got {} to {}", name, each->variable.range.describe("a number"), low, high));
     demand(std::none_of(question.tolerances.begin(), each,
                         [&](const SampledNumber& other) { return other.variable.name == name; }),
-           "tolerance", "must name each number once, got " + in_quotes(name) + " twice");
+           "tolerance", filled("must name each number once, got {} twice", in_quotes(name)));
     demand(!(name == "damping" && scene.damping_ratio) && !(name == "damping_ratio" && scene.damping),
            "tolerance", name + " has no value in the scene to vary about");
   }
   for (const auto& [name, range] :
        {std::pair("secondary_mass", question.secondary_mass), {"clearance", question.clearance}})
     demand(range.least > 0 && range.least < range.most, name,
-           "must be two numbers > 0, the first one smaller, got " + number_text(range.least) + " and " +
-               number_text(range.most));
+           filled("must be two numbers > 0, the first one smaller, got {} and {}", range.least, range.most));
   if (!problems.empty()) return problems;
   for (const Design& corner : {Design{question.secondary_mass.least, question.clearance.least},
                                Design{question.secondary_mass.most, question.clearance.most}}) {
@@ -395,8 +393,8 @@ DesignAnswer find_designs(const DesignQuestion& question, const Threads& threads
     if (const auto soonest = DesignSearch(question, threads, tell, runs).soonest())
       answer.designs.push_back(*soonest);
   for (FoundDesign& each : answer.designs) {
-    tell("checking the design for " + rounded_text(each.time, 3) + " with " +
-         std::to_string(question.neighbours) + " neighbours");
+    tell(filled("checking the design for {} with {} neighbours", rounded_text(each.time, 3),
+                question.neighbours));
     each.check = checked(question, each, threads);
   }
   Plan empty = check_plan(question, {least_part * *question.scene.mass, question.clearance.least});
@@ -426,39 +424,32 @@ void write_question(JsonWriter& out, const DesignQuestion& question) {
              question.secondary_mass.most);
   out.object("clearance", Layout::one_line, "least", question.clearance.least, "most",
              question.clearance.most);
-  out.open_array("tolerances", Layout::one_line);
-  for (const SampledNumber& each : question.tolerances) {
-    out.open_object(Layout::one_line);
+  out.objects("tolerances", Layout::one_line, question.tolerances, [&](const SampledNumber& each) {
     out.fields("number", each.variable.name, "half_width", each.width, "relative", each.relative);
-    out.close();
-  }
-  out.close();
+  });
   out.fields("neighbours", question.neighbours, "seed", question.seed);
   out.close();
 }
 
-void write_design(JsonWriter& out, const FoundDesign& found, const DesignQuestion& question,
-                  bool dimensionless) {
+void write_design(JsonWriter& out, const FoundDesign& found, const DesignQuestion& question) {
   const DesignCheck& check = found.check;
-  out.open_object(Layout::one_line);
+  std::optional<double> force = check.largest_wall_force;
+  if (force) force = force_in_unit(*force, question);
   out.fields("time", found.time, "widest_clearance", found.widest, "secondary_mass",
              found.design.secondary_mass, "clearance", found.design.clearance, "nominal_time",
              check.nominal_time, "time_of_share", check.time_of_share, "slowest", check.slowest, "in_time",
              check.in_time, "share_low", check.share.low, "share_high", check.share.high, "confirmed",
-             check.confirmed, "largest_impact_speed", check.largest_impact_speed);
-  std::optional<double> force = check.largest_wall_force;
-  if (force) force = force_in_unit(*force, question, dimensionless);
-  out.field("largest_wall_force", force);
-  out.close();
+             check.confirmed, "largest_impact_speed", check.largest_impact_speed, "largest_wall_force",
+             force);
 }
 
 }  // namespace
 
-double force_in_unit(double force, const DesignQuestion& question, bool dimensionless) {
-  return dimensionless ? force * (1 / scales_of(question.scene).of(Dimension::force)) : force;
+double force_in_unit(double force, const DesignQuestion& question) {
+  return question.in_units ? force : force * (1 / scales_of(question.scene).of(Dimension::force));
 }
 
-std::string design_text(const DesignQuestion& question, const DesignAnswer& answer, bool dimensionless) {
+std::string design_text(const DesignQuestion& question, const DesignAnswer& answer) {
   JsonWriter out("design");
   out.open_object(Layout::lines);
   out.field("schema", "impact-damper/design/1");
@@ -466,14 +457,13 @@ std::string design_text(const DesignQuestion& question, const DesignAnswer& answ
   out.open_object("units", Layout::one_line);
   using enum Dimension;
   for (const Dimension each : {mass, length, time, velocity, force})
-    out.field(name_of(each), unit_of(each, !dimensionless));
+    out.field(name_of(each), unit_of(each, question.in_units));
   out.close();
   out.object("search", Layout::one_line, "draws", answer.draws, "late_allowed", answer.late_allowed, "runs",
              answer.runs);
   out.field("met", answer.met);
-  out.open_array("designs", Layout::lines);
-  for (const FoundDesign& each : answer.designs) write_design(out, each, question, dimensionless);
-  out.close();
+  out.objects("designs", Layout::lines, answer.designs,
+              [&](const FoundDesign& each) { write_design(out, each, question); });
   write_provenance(out);
   return sealed(out.finish());
 }

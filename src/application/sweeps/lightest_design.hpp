@@ -29,6 +29,7 @@ struct DesignQuestion {
   // A free decay, with the secondary mass released at the left wall. The search does not use its secondary
   // mass, clearance and stops, but design_text() needs the first two.
   SceneInUnits scene;
+  bool in_units = true;  // false: the scene was made by with_unit_scales()
   Engine engine;
   double amplitude = 0;  // mm, > 0 and < |initial displacement|: the decay must fall below it
   double time = 0;       // s, > 0: and must do so within this time
@@ -117,12 +118,12 @@ std::int64_t least_neighbours_of(double share);
 std::vector<double> steps_between(DesignRange range, double ratio);
 
 // Returns question and answer as JSON, schema "impact-damper/design/1" (data/schema/design.schema.json).
-// `dimensionless`: the scene was made by with_unit_scales(). The question's scene must have
+// The question's scene must have
 // secondary_mass and clearance.
-std::string design_text(const DesignQuestion& question, const DesignAnswer& answer, bool dimensionless);
+std::string design_text(const DesignQuestion& question, const DesignAnswer& answer);
 
-// Returns a force of an answer in unit_of(Dimension::force, !dimensionless). `dimensionless` as above; the
+// Returns a force of an answer in unit_of(Dimension::force, question.in_units). The
 // question's scene must then have a clearance.
-double force_in_unit(double force, const DesignQuestion& question, bool dimensionless);
+double force_in_unit(double force, const DesignQuestion& question);
 
 }  // namespace impact_damper

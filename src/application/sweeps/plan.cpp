@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "application/sweeps/sampling.hpp"
 #include "impact_damper/base/number_text.hpp"
@@ -43,6 +44,17 @@ void finish(PlannedRun& run, const SceneFile& changed) {
     run.scene = dimensionless(*changed.in_units);
     run.scales = scales_of(*changed.in_units);
   }
+}
+
+// Returns the columns of the numbers that vary, each with its unit.
+std::vector<std::pair<std::string, std::string_view>> varied(const Plan& plan) {
+  std::vector<std::pair<std::string, std::string_view>> columns;
+  for (const GridAxis& axis : plan.grid) columns.emplace_back(axis.variable.name, axis.variable.unit);
+  if (plan.samples)
+    for (const SampledNumber& number : plan.samples->numbers)
+      columns.emplace_back(number.variable.name + (is_in_grid(plan, number.variable) ? "_sampled" : ""),
+                           number.variable.unit);
+  return columns;
 }
 
 double drawn(const Samples& samples, std::size_t n, std::int64_t i, double otherwise) {
@@ -113,12 +125,7 @@ std::int64_t runs_of(const Plan& plan) {
 
 std::vector<std::string> varied_names(const Plan& plan) {
   std::vector<std::string> names;
-  for (const GridAxis& axis : plan.grid) names.emplace_back(axis.variable.name);
-  if (plan.samples) {
-    for (const SampledNumber& number : plan.samples->numbers)
-      names.push_back(std::string(number.variable.name) +
-                      (is_in_grid(plan, number.variable) ? "_sampled" : ""));
-  }
+  for (const auto& [name, unit] : varied(plan)) names.push_back(name);
   return names;
 }
 
@@ -191,13 +198,8 @@ std::string row_of(const Plan& plan, std::int64_t i) {
 std::vector<PlanColumn> columns_of(const Plan& plan) {
   const bool in_units = plan.scene.in_units.has_value();
   std::vector<PlanColumn> columns{{"run", "", "number of the run, from 0"}};
-  std::vector<std::string_view> units;
-  for (const GridAxis& axis : plan.grid) units.push_back(axis.variable.unit);
-  if (plan.samples)
-    for (const SampledNumber& number : plan.samples->numbers) units.push_back(number.variable.unit);
-  const std::vector<std::string> names = varied_names(plan);
-  for (std::size_t n = 0; n < names.size(); ++n)
-    columns.push_back({names[n], std::string(units[n]), "a number of the scene"});
+  for (const auto& [name, unit] : varied(plan))
+    columns.push_back({name, std::string(unit), "a number of the scene"});
   for (const KeptQuantity& kept : plan.quantities)
     columns.push_back({kept.column(), std::string(unit_of(kept.quantity->dimension, in_units)),
                        std::string(kept.quantity->meaning)});
@@ -235,9 +237,9 @@ void read_ends(ObjectReader& object, const NumberRange& range, double& from, dou
   const bool has_from = object.required("from", from, range), has_to = object.required("to", to, range);
   if (scale) object.optional("scale", *scale);
   if (!has_from || !has_to) return;
-  if (!(from < to)) object.reject("to", "must be > from, " + number_text(from) + ", got " + number_text(to));
+  if (!(from < to)) object.reject("to", filled("must be > from, {}, got {}", from, to));
   if (scale && *scale == Spacing::logarithmic && !(from > 0))
-    object.reject("from", "must be > 0 for a logarithmic scale, got " + number_text(from));
+    object.reject("from", filled("must be > 0 for a logarithmic scale, got {}", from));
 }
 
 std::vector<GridAxis> read_grid(ObjectReader& plan, const std::vector<Variable>& variables) {
@@ -363,17 +365,13 @@ void write_ends(JsonWriter& out, double from, double to, Spacing spacing) {
 void write_samples(JsonWriter& out, const Samples& samples) {
   out.open_object("samples", Layout::one_line);
   out.fields("count", samples.count, "seed", samples.seed, "method", name_of(samples.method));
-  out.open_array("numbers", Layout::one_line);
-  for (const SampledNumber& each : samples.numbers) {
-    out.open_object(Layout::one_line);
+  out.objects("numbers", Layout::one_line, samples.numbers, [&](const SampledNumber& each) {
     out.field("number", each.variable.name);
     if (each.law == Law::between)
       write_ends(out, each.from, each.to, each.spacing);
     else
       out.fields(name_of_width(each.law), each.width, "relative", each.relative);
-    out.close();
-  }
-  out.close();
+  });
   out.close();
 }
 
@@ -389,27 +387,19 @@ void write_fields(JsonWriter& out, const Plan& plan) {
   }
   out.close();
   write_engine(out, plan.engine);
-  out.open_array("grid", Layout::one_line);
-  for (const GridAxis& axis : plan.grid) {
-    out.open_object(Layout::one_line);
+  out.objects("grid", Layout::one_line, plan.grid, [&](const GridAxis& axis) {
     out.field("number", axis.variable.name);
-    if (axis.values.empty()) {
-      write_ends(out, axis.from, axis.to, axis.spacing);
-      out.field("count", axis.count);
-    } else {
-      out.field("values", axis.values);
-    }
-    out.close();
-  }
-  out.close();
+    if (!axis.values.empty()) return out.field("values", axis.values);
+    write_ends(out, axis.from, axis.to, axis.spacing);
+    out.field("count", axis.count);
+  });
   if (plan.samples) write_samples(out, *plan.samples);
   std::vector<std::string> quantities;
   for (const KeptQuantity& each : plan.quantities) quantities.push_back(each.text());
   out.field("quantities", quantities);
-  const ForcedRules& forced = plan.forced;
-  out.object("steady", Layout::one_line, "tolerance", forced.steady.tolerance, "longest_period",
-             forced.steady.longest_period, "max_periods", forced.steady.max_periods, "mean_periods",
-             forced.steady.mean_periods);
+  ForcedRules forced = plan.forced;
+  JsonFields(out).object("steady", Layout::one_line,
+                         [&](JsonFields steady) { describe(steady, forced.steady); });
   if (forced.frequencies)
     out.object("frequencies", Layout::one_line, "from", forced.frequencies->from, "to",
                forced.frequencies->to, "count", forced.frequencies->count);
@@ -453,13 +443,12 @@ std::vector<Problem> problems_of(const Plan& plan) {
   };
   const auto demand_at_most = [&](std::size_t most, std::size_t given, const std::string& field,
                                   const std::string& of) {
-    demand(given <= most, field,
-           "must be at most " + std::to_string(most) + of + ", got " + std::to_string(given));
+    demand(given <= most, field, filled("must be at most {}{}, got {}", most, of, given));
   };
   std::set<std::string> names;
   const auto demand_once = [&](const std::string& name, const std::string& field, const std::string& thing) {
     demand(names.insert(name).second, field,
-           "must name each " + thing + " once, got " + in_quotes(name) + " twice");
+           filled("must name each {} once, got {} twice", thing, in_quotes(name)));
   };
   demand(!plan.grid.empty() || (plan.samples && !plan.samples->numbers.empty()), "grid",
          "a number that varies must be given, in grid or in the numbers of samples");
@@ -467,8 +456,8 @@ std::vector<Problem> problems_of(const Plan& plan) {
   for (const GridAxis& axis : plan.grid) {
     demand_once(axis.variable.name, "grid", "number");
     demand(axis.values.size() <= std::size_t(most_listed_values), "grid",
-           "must list at most " + std::to_string(most_listed_values) + " values of " + axis.variable.name +
-               ", got " + std::to_string(axis.values.size()));
+           filled("must list at most {} values of {}, got {}", most_listed_values, axis.variable.name,
+                  axis.values.size()));
   }
   names.clear();
   for (const SampledNumber& number : plan.samples ? plan.samples->numbers : std::vector<SampledNumber>{}) {
@@ -476,14 +465,13 @@ std::vector<Problem> problems_of(const Plan& plan) {
     const bool in_grid = is_in_grid(plan, variable), is_between = number.law == Law::between;
     demand_once(variable.name, "samples", "number");
     demand(!is_between || !in_grid, "samples",
-           in_quotes(variable.name) +
-               " is in the grid: it may vary about its value there, by half_width or standard_deviation, not "
-               "from one number to another");
+           filled("{} is in the grid: it may vary about its value there, by half_width or "
+                  "standard_deviation, not from one number to another",
+                  in_quotes(variable.name)));
     demand(is_between || in_grid || variable.of(plan.scene), "samples",
-           in_quotes(variable.name) + " has no value in the scene to vary about");
+           filled("{} has no value in the scene to vary about", in_quotes(variable.name)));
   }
-  demand(runs_of(plan) <= most_runs, "grid",
-         "must make at most " + std::to_string(most_runs) + " runs in all");
+  demand(runs_of(plan) <= most_runs, "grid", filled("must make at most {} runs in all", most_runs));
   demand(!plan.quantities.empty(), "quantities", "at least one must be given");
   demand_at_most(most_quantities, plan.quantities.size(), "quantities", "");
   names.clear();
@@ -494,8 +482,8 @@ std::vector<Problem> problems_of(const Plan& plan) {
   };
   const std::size_t dampers = plan.scene.scene.dampers.size();
   demand(dampers <= most_dampers_with_changes || !are_of(Experiment::lyapunov), "quantities",
-         "must not be of exponents with more than " + std::to_string(most_dampers_with_changes) +
-             " dampers, as the scene has " + std::to_string(dampers));
+         filled("must not be of exponents with more than {} dampers, as the scene has {}",
+                most_dampers_with_changes, dampers));
   demand(plan.forced.frequencies || !are_of(Experiment::worst), "frequencies",
          "missing, the range must be given in which the worst one is looked for");
   const bool forced = are_of(Experiment::steady) || are_of(Experiment::worst) || are_of(Experiment::lyapunov);

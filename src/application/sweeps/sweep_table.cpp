@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "impact_damper/base/errors.hpp"
+#include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/csv.hpp"
 #include "impact_damper/io/file_output.hpp"
 #include "impact_damper/io/json_parts.hpp"
@@ -145,13 +146,9 @@ std::string description_text(const ShareHead& head, std::uint64_t bytes, const s
   out.open_object(Layout::lines);
   out.field("schema", table_schema);
   write_plan(out, head.plan);
-  out.open_array("columns", Layout::lines);
-  for (const PlanColumn& column : columns_of(head.plan)) {
-    out.open_object(Layout::one_line);
+  out.objects("columns", Layout::lines, columns_of(head.plan), [&](const PlanColumn& column) {
     out.fields("name", column.name, "unit", column.unit, "meaning", column.meaning);
-    out.close();
-  }
-  out.close();
+  });
   out.object("table", Layout::one_line, "rows", runs_of(head.plan), "bytes", std::int64_t(bytes), "sha256",
              digest);
   out.field("program", head.program);
@@ -167,8 +164,7 @@ void check_columns(ObjectReader& root, const Plan& plan) {
   const std::vector<ObjectReader> columns = root.required_objects("columns", 10'000);
   if (!root.all_valid()) return;
   if (columns.size() != expected.size())
-    root.reject("columns", "must be the " + std::to_string(expected.size()) + " of the plan, got " +
-                               std::to_string(columns.size()));
+    root.reject("columns", filled("must be the {} of the plan, got {}", expected.size(), columns.size()));
   for (std::size_t i = 0; i < std::min(columns.size(), expected.size()); ++i) {
     ObjectReader column = columns[i];
     column.word("name", {expected[i].name});
@@ -180,9 +176,7 @@ void check_columns(ObjectReader& root, const Plan& plan) {
 }  // namespace
 
 fs::path share_file(const fs::path& table, std::int64_t part, std::int64_t parts) {
-  fs::path file = table;
-  file += ".part-" + std::to_string(part) + "-of-" + std::to_string(parts);
-  return file;
+  return filled("{}.part-{}-of-{}", table, part, parts);
 }
 
 ShareWriter::ShareWriter(const fs::path& file, const ShareHead& head) : file_(file) {
@@ -205,9 +199,9 @@ ShareWriter::ShareWriter(const fs::path& file, const ShareHead& head) : file_(fi
     if (line != first) {
       const bool is_of_it = line.find(in_quotes(head.program)) != std::string::npos;
       if (is_of_it && is_altered(file.string(), line)) reject(file, altered);
-      reject(file, "holds runs of another plan, part or program, with which these must not be mixed: " +
-                       (is_of_it ? "the program is the same" : "this program is " + head.program) +
-                       "; remove it, or choose another --output");
+      reject(file, filled("holds runs of another plan, part or program, with which these must not be mixed: "
+                          "{}; remove it, or choose another --output",
+                          is_of_it ? "the program is the same" : "this program is " + head.program));
     }
     whole = scan(there, head, first, [](const std::string&) {});
   }
@@ -256,19 +250,18 @@ void join_shares(const std::vector<fs::path>& files, const fs::path& table) {
   for (const auto& [file, head] : shares) {
     expected.part = head.part;
     if (head_line(head) != head_line(expected))
-      problems.push_back(file.string() + ": must be of the same plan and program, in as many parts, as " +
-                         shares[0].first.string());
+      problems.push_back(
+          filled("{}: must be of the same plan and program, in as many parts, as {}", file, shares[0].first));
   }
   if (!problems.empty()) throw InputError(problems);
   for (std::size_t i = 1; i < shares.size(); ++i)
     if (shares[i].second.part == shares[i - 1].second.part)
-      problems.push_back(shares[i].first.string() + ": is part " + std::to_string(shares[i].second.part) +
-                         ", as " + shares[i - 1].first.string() + " is");
+      problems.push_back(
+          filled("{}: is part {}, as {} is", shares[i].first, shares[i].second.part, shares[i - 1].first));
   std::int64_t next = 1;
   const auto demand_parts_before = [&](std::int64_t part) {
     for (; next < part; ++next)
-      problems.push_back(table.string() + ": part " + std::to_string(next) + " of " +
-                         std::to_string(expected.parts) + " is missing");
+      problems.push_back(filled("{}: part {} of {} is missing", table, next, expected.parts));
     next = part + 1;
   };
   for (const auto& share : shares) demand_parts_before(share.second.part);
@@ -282,12 +275,14 @@ void join_shares(const std::vector<fs::path>& files, const fs::path& table) {
       const std::int64_t needed = rows_of_part(head.plan, head.part, head.parts).size();
       if (!whole.complete && is_altered(file.string(), share.first)) reject(file, altered);
       if (!whole.complete)
-        reject(file, "line " + std::to_string(whole.lines) +
-                         " is not what it was when it was written: a row is altered, missing or doubled, or "
-                         "the part is not finished; the command that made it goes on from there");
+        reject(file,
+               filled("line {} is not what it was when it was written: a row is altered, missing or "
+                      "doubled, or the part is not finished; the command that made it goes on from there",
+                      whole.lines));
       if (whole.rows != needed)
-        reject(file, "must hold " + std::to_string(needed) + " runs, got " + std::to_string(whole.rows) +
-                         ": it is not finished; the command that made it goes on from there");
+        reject(file, filled("must hold {} runs, got {}: it is not finished; the command that made it goes on "
+                            "from there",
+                            needed, whole.rows));
     }
   };
   Sha256 hash;
@@ -335,8 +330,8 @@ SweepDescription read_sweep_description(const fs::path& table) {
   std::string program;
   root.required("program", program);
   if (root.all_valid() && description.rows != runs_of(description.plan))
-    holds.reject("rows", "must be the " + std::to_string(runs_of(description.plan)) + " of the plan, got " +
-                             std::to_string(description.rows));
+    holds.reject("rows",
+                 filled("must be the {} of the plan, got {}", runs_of(description.plan), description.rows));
   document.finish(root);
   return description;
 }
@@ -353,8 +348,8 @@ void read_sweep_rows(const fs::path& table, const SweepDescription& description,
     bytes += std::int64_t(line.size());
   }
   if (bytes != description.bytes || lines != description.rows + 1 || hash.digest() != description.digest)
-    reject(table, "is not the table that " + description_of(table).string() +
-                      " describes: its length or SHA-256 is another");
+    reject(table, filled("is not the table that {} describes: its length or SHA-256 is another",
+                         description_of(table)));
   stream.clear();
   stream.seekg(0);
   std::getline(stream, line);

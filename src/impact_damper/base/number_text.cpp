@@ -99,4 +99,14 @@ std::optional<double> parse_number(std::string_view text) {
 
 std::optional<std::int64_t> parse_integer(std::string_view text) { return parse_whole<std::int64_t>(text); }
 
+std::string with_values(std::string_view pattern, const std::vector<std::string>& values) {
+  std::string text;
+  for (const std::string& value : values) {
+    const std::size_t place = pattern.find("{}");
+    text.append(pattern.substr(0, place)).append(value);
+    pattern.remove_prefix(place + 2);
+  }
+  return text.append(pattern);
+}
+
 }  // namespace impact_damper

@@ -3,9 +3,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <type_traits>
+#include <vector>
 
 namespace impact_damper {
 
@@ -25,6 +28,32 @@ double rounded_to(double value, int digits);
 // sign may precede it, as some instruments write.
 std::optional<double> parse_number(std::string_view text);
 std::optional<std::int64_t> parse_integer(std::string_view text);
+
+// A text with a place {} for each of these values.
+template <class... Values>
+struct Pattern {
+  std::string_view text;
+  consteval Pattern(const char* literal) : text(literal) {
+    std::size_t places = 0;
+    for (std::size_t at = 0; (at = text.find("{}", at)) != std::string_view::npos; at += 2) ++places;
+    if (places != sizeof...(Values)) throw std::invalid_argument("a place for each value");
+  }
+};
+std::string with_values(std::string_view pattern, const std::vector<std::string>& values);
+template <class Value>
+std::string value_text(const Value& value) {
+  if constexpr (std::is_floating_point_v<Value>)
+    return number_text(value);
+  else if constexpr (std::is_integral_v<Value>)
+    return std::to_string(value);
+  else
+    return std::string(value);
+}
+// Returns the pattern, a literal, with the values in its places: texts, and numbers by number_text().
+template <class... Values>
+std::string filled(Pattern<std::type_identity_t<Values>...> pattern, const Values&... values) {
+  return with_values(pattern.text, {value_text(values)...});
+}
 
 // The same by printf and strtod, with the same text as std::to_chars, for standard libraries whose <charconv>
 // supports integers only (LLVM's up to version 13, with which WebAssembly is compiled on Debian 12). Correct

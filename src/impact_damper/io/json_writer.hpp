@@ -78,6 +78,18 @@ class JsonWriter {
     close();
   }
 
+  // Writes an array of objects, each on one line; write(element) writes its fields.
+  template <typename Elements, typename Write>
+  void objects(std::string_view name, Layout layout, const Elements& elements, Write write) {
+    open_array(name, layout);
+    for (const auto& element : elements) {
+      open_object(Layout::one_line);
+      write(element);
+      close();
+    }
+    close();
+  }
+
   std::string finish() { return std::move(text_); }
 
  private:

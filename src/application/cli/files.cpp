@@ -1,12 +1,17 @@
-#include "output.hpp"
+#include "files.hpp"
 
 #include <algorithm>
-#include <filesystem>
+#include <array>
+#include <system_error>
 
+#include "application/reproduction/scene_runs.hpp"
 #include "application/sweeps/sweep_table.hpp"
 #include "progress.hpp"
 
 namespace impact_damper::cli {
+
+namespace fs = std::filesystem;
+
 namespace {
 
 struct FormatInfo {
@@ -33,7 +38,7 @@ bool is_ending_of(const std::string& ending, Format format) {
 
 // Returns the ending in lower case, with its point; empty if there is none.
 std::string ending_of(const std::string& file) {
-  const std::string ending = in_lower_case(std::filesystem::path(file).extension().string());
+  const std::string ending = in_lower_case(fs::path(file).extension().string());
   constexpr std::size_t longest = sizeof ".markdown" - 1;
   const bool is_one = ending.size() > 1 && ending.size() <= longest && ending[1] >= 'a' && ending[1] <= 'z';
   return is_one ? ending : "";
@@ -46,6 +51,35 @@ std::size_t width_of(const std::string& text) {
 }
 
 }  // namespace
+
+std::string project_file(const std::string& name) {
+  std::error_code none;
+  if (fs::exists(name, none)) return name;
+  const fs::path program = fs::read_symlink("/proc/self/exe", none);
+  if (none) return name;
+  const fs::path folder = program.parent_path();
+  for (const fs::path& place :
+       std::array{folder.parent_path() / "share/impact-damper", folder.parent_path().parent_path()}) {
+    if (fs::exists(place / name, none)) return (place / name).string();
+  }
+  return name;
+}
+
+std::optional<std::string> find_named_file(const std::string& name) {
+  std::error_code none;
+  const std::string found = project_file(name);
+  const bool is_of_project = name.starts_with("data/") || name.starts_with("figures/");
+  return is_of_project && fs::exists(found, none) ? std::optional(found) : std::nullopt;
+}
+
+void add_ensemble(std::vector<fs::path>& files, const fs::path& run) {
+  files.push_back(run);
+  for (std::int64_t member = 2; member <= most_members; ++member) files.push_back(member_file(run, member));
+}
+
+std::string_view embedded_text(std::string_view name) {
+  return std::ranges::find(embedded_files(), name, &EmbeddedFile::name)->text;
+}
 
 void reject_other_endings(Arguments& arguments, const std::string& option,
                           const std::optional<std::string>& output, std::initializer_list<Format> written) {
@@ -65,7 +99,7 @@ Format format_of(Arguments& arguments, const std::optional<std::string>& output,
                  std::initializer_list<Format> offered) {
   const Format format = arguments.choice("--format", offered, *offered.begin());
   std::error_code none;
-  if (!output || std::filesystem::is_directory(*output, none)) return format;
+  if (!output || fs::is_directory(*output, none)) return format;
   const auto* const other =
       std::ranges::find_if(offered, [&](Format each) { return is_ending_of(ending_of(*output), each); });
   if (other == offered.end() || *other == format) {
@@ -79,7 +113,7 @@ Format format_of(Arguments& arguments, const std::optional<std::string>& output,
 
 std::optional<std::string> output_of(Arguments& arguments, const std::string& option,
                                      std::initializer_list<Format> written,
-                                     const std::vector<std::filesystem::path>& inputs) {
+                                     const std::vector<fs::path>& inputs) {
   auto output = arguments.file(option);
   arguments.reject_overwriting(option, output, inputs);
   reject_other_endings(arguments, option, output, written);
@@ -89,7 +123,6 @@ std::optional<std::string> output_of(Arguments& arguments, const std::string& op
 void reject_same_output(Arguments& arguments, const std::string& option,
                         const std::optional<std::string>& file, const std::string& other_option,
                         const std::optional<std::string>& other) {
-  namespace fs = std::filesystem;
   const auto place = [](const std::string& name) { return fs::weakly_canonical(fs::absolute(name)); };
   if (file && other && place(*file) == place(*other))
     arguments.reject(option, "must be another file than " + other_option + ", got " + in_quotes(*file));

@@ -1,7 +1,10 @@
-// Where a command writes a result: to the file that an option names, or to standard output, which "-" names;
-// and how it writes tables and numbers for people.
+// The files of a command: those of the project, where catalogue, claims, scenes and manifest are, and those
+// of figures/ and paper/page/ that are part of the program (embedded.cmake), so that it stands alone wherever
+// it is installed or moved; and where it writes a result, to the file that an option names, or to standard
+// output, which "-" names; and how it writes tables and numbers for people.
 #pragma once
 
+#include <filesystem>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -13,6 +16,27 @@
 #include "impact_damper/io/file_output.hpp"
 
 namespace impact_damper::cli {
+
+// Returns the file or folder of this name in the source folder ("data/claims.json"): the first that exists of
+//   1. NAME in the current folder,
+//   2. PREFIX/share/impact-damper/NAME, for a program installed as PREFIX/bin/impact-damper,
+//   3. SOURCE/NAME, for a program built as SOURCE/build/src/impact-damper.
+// NAME itself if none does, for the error message of its reader. Links to the program are followed.
+std::string project_file(const std::string& name);
+
+// Returns the place of a name that a user gave, "data/..." or "figures/...". Absent if there is none, or for
+// any other name.
+std::optional<std::string> find_named_file(const std::string& name);
+
+// Adds a run file, and those of the other members of its ensemble that there may be.
+void add_ensemble(std::vector<std::filesystem::path>& files, const std::filesystem::path& run);
+
+struct EmbeddedFile {
+  std::string_view name;  // without its folder
+  std::string_view text;
+};
+const std::vector<EmbeddedFile>& embedded_files();
+std::string_view embedded_text(std::string_view name);  // of one of them
 
 // The format of a result.
 enum class Format { json, csv, gnuplot, html, svg, markdown, hdf5 };
