@@ -38,10 +38,7 @@ Outcome observed(const Checked& run, const Cem&, OwnRecorder& recorder) {
 
 template <class Options>
 void write(const Scene& scene, const Options& options) {
-  Record record;
-  record.half_cycles = true;
-  record.impacts = record.contacts = record.energy = true;
-  record.history = {{0, 150, 301}};
+  const Record record{.impacts = true, .contacts = true, .energy = true, .history = {{0, 150, 301}}};
   const Checked checked_run = checked(scene, options, record);
   OwnRecorder recorder(record, scene.dampers.size());
   const Outcome outcome = observed(checked_run, options, recorder);

@@ -2,7 +2,7 @@
 // restitution, damping and clearance are drawn at random, with noise, offset and drift, fitted from the one
 // scene file.
 //
-//   coverage RECORDS SEED [LOW HIGH [known]]     known: the scene has the true damping, which is not fitted
+//   coverage RECORDS SEED [LOW HIGH]
 //
 // Prints a row for each record and parameter, then the share for each parameter. Exit code 1 if the share of
 // all intervals is not from LOW to HIGH.
@@ -21,13 +21,9 @@ int main(int count, char** words) {
   const int records = count > 1 ? std::atoi(words[1]) : 40;
   const unsigned seed = count > 2 ? unsigned(std::atoi(words[2])) : 1;
   const double low = count > 4 ? std::atof(words[3]) : 0, high = count > 4 ? std::atof(words[4]) : 1;
-  const bool damping_is_known = count > 5 && words[5] == std::string("known");
-  const std::vector<FitParameter> parameters =
-      damping_is_known ? std::vector{FitParameter::restitution, FitParameter::clearance}
-                       : FitOptions{}.parameters;
+  const std::vector<FitParameter> parameters = FitOptions{}.parameters;
   struct Row {
     SceneInUnits truth;
-    std::size_t bins = 0;
     FitResult result;
   };
   std::vector<Row> rows(static_cast<std::size_t>(records));
@@ -44,14 +40,10 @@ int main(int count, char** words) {
     row.truth.initial_displacement = between(40, 70);
     const Reduction reduction = reduced(
         "made", made::measured(row.truth, {.noise = 0.05, .offset = 1, .drift = 1, .seed = unsigned(i)}));
-    const std::vector<LossBin> bins = loss_bins(reduction);
-    row.bins = bins.size();
     FitOptions options;
     options.threads = 1;
-    options.parameters = parameters;
-    SceneInUnits scene = made::mast();
-    if (damping_is_known) scene.damping_ratio = row.truth.damping_ratio;
-    row.result = fit_decay(scene, Restitution{}, reduction, bins, options, [](const std::string&) {});
+    row.result = fit_decay(made::mast(), Restitution{}, reduction, loss_bins(reduction), options,
+                           [](const std::string&) {});
   });
   int held = 0, all = 0, unlike = 0;
   std::vector<int> held_by(parameters.size()), open(parameters.size());

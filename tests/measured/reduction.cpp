@@ -54,6 +54,7 @@ MeasuredRecord made(const Made& m) {
 double peak_time(std::int64_t n) { return (1 - std::atan(zeta) + double(n) * std::numbers::pi) / omega; }
 double peak(double t) { return largest * std::exp(-zeta * omega * t) / std::sqrt(1 + zeta * zeta); }
 std::int64_t nearest_peak(double t) { return std::lround((t * omega - 1) / std::numbers::pi); }
+double nearest_height(double t) { return peak(peak_time(nearest_peak(t))); }
 
 // Of the loss factor (M12.1), per radian of the record's own frequency: the largest relative error.
 double loss_error(const Reduction& r) {
@@ -96,7 +97,7 @@ TEST_CASE("offset and drift are taken out, and the noise is estimated") {
   REQUIRE(r.time.size() > 60);
   double squares = 0;
   for (std::size_t i = 0; i < r.time.size(); ++i) {
-    const double deviation = (r.amplitude[i] - peak(peak_time(nearest_peak(r.time[i])))) / r.error[i];
+    const double deviation = (r.amplitude[i] - nearest_height(r.time[i])) / r.error[i];
     squares += deviation * deviation / double(r.time.size());
   }
   // Deviations in units of the error that is stated; five standard errors of the mean of 60 squares are 0.9.
@@ -123,7 +124,7 @@ TEST_CASE("half cycles that the instrument clipped are left out, sharply or soft
   CHECK(soft.clipped <= 8);
   for (const Reduction* r : {&sharp, &soft})
     for (std::size_t i = 0; i < r->time.size(); ++i)
-      CHECK(std::abs(r->amplitude[i] / peak(peak_time(nearest_peak(r->time[i]))) - 1) <
+      CHECK(std::abs(r->amplitude[i] / nearest_height(r->time[i]) - 1) <
             0.04 + 5 * r->error[i] / r->amplitude[i]);
 }
 
@@ -138,7 +139,7 @@ TEST_CASE("missing samples cost their half cycles alone, and half cycles are cou
   for (const Reduction* r : {&whole, &gap})
     for (std::size_t i = 0; i < r->time.size(); ++i) {
       CHECK(r->half_cycle[i] - r->half_cycle[0] == nearest_peak(r->time[i]) - nearest_peak(r->time[0]));
-      CHECK(std::abs(r->amplitude[i] / peak(peak_time(nearest_peak(r->time[i]))) - 1) <
+      CHECK(std::abs(r->amplitude[i] / nearest_height(r->time[i]) - 1) <
             6 * r->error[i] / r->amplitude[i] + 1e-3);
     }
   CHECK(gap.frequency == doctest::Approx(hertz).epsilon(3e-4));  // of the last peak, 0.03 rad of 112 pi
@@ -173,7 +174,7 @@ TEST_CASE("spikes, of impacts or of the instrument, are neither peaks nor amplit
       "r", made({.noise = 0.02, .changed = [&](double, double x) { return ++n % 37 == 0 ? x + 30 : x; }}));
   REQUIRE(r.time.size() > 90);
   for (std::size_t i = 0; i < r.time.size(); ++i)
-    CHECK(std::abs(r.amplitude[i] - peak(peak_time(nearest_peak(r.time[i])))) < 6 * r.error[i] + 0.03);
+    CHECK(std::abs(r.amplitude[i] - nearest_height(r.time[i])) < 6 * r.error[i] + 0.03);
 }
 
 TEST_CASE("a record without a decay, or with too few samples in a cycle, is rejected") {
