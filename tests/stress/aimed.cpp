@@ -7,7 +7,6 @@
 #include "impact_damper/simulate.hpp"
 #include "reference.hpp"
 #include "stress.hpp"
-#include "watch.hpp"
 
 namespace stress {
 
@@ -37,11 +36,9 @@ Check grazing(const Options& options) {
   for (std::int64_t i = 0; i < seeds; ++i) {
     const std::uint64_t seed = first + std::uint64_t(i);
     reference::Random random(seed);
-    Scene scene;
+    Scene scene{.until_time = 1.2, .dampers = {{.y0 = 0.5}}};
     scene.x0 = random.uniform(1.5, 50);
-    scene.damper().y0 = 0.5;
     scene.damper().restitution = random.uniform(0, 1);
-    scene.until_time = 1.2;
     for (const Engine& engine : both) {
       const auto met = [&](double w0) {
         scene.damper().w0 = w0;
@@ -84,11 +81,14 @@ Check on_a_wall() {
               // Deeper than y = 1 can be told from.
               if (y0 == 1 && std::abs(w0) == epsilon) continue;
               for (const Engine& engine : both) {
-                Scene scene;
-                scene.x0 = x0, scene.v0 = v0, scene.damper().y0 = y0, scene.damper().w0 = w0;
-                scene.damper().restitution = e, scene.force_amplitude = f0;
                 // A lossless wall rings for ever, which is long to follow.
-                scene.until_time = std::abs(w0) > 1 ? 1e-6 : e == 1 ? 0.03 : 2;
+                const Scene scene{.x0 = x0,
+                                  .v0 = v0,
+                                  .force_amplitude = f0,
+                                  .until_time = std::abs(w0) > 1 ? 1e-6
+                                                : e == 1         ? 0.03
+                                                                 : 2,
+                                  .dampers = {{.restitution = e, .y0 = y0, .w0 = w0}}};
                 if (!keep_promises(check, "case", scene, engine).all_kept()) continue;
                 const Impacts impacts =
                     *simulate(scene, engine, {.half_cycles = false, .impacts = true}).impacts;
@@ -114,11 +114,8 @@ Check within_a_rounding(const Options& options) {
   std::int64_t coincident = 0;
   for (const double e : {0.3, 0.5}) {
     for (const bool rigid : {true, false}) {
-      Scene scene;
-      scene.damper().mass_ratio = 1e-8;
-      scene.damper().wall_stiffness = 1e15;
-      scene.damper().restitution = e;
-      scene.until_time = options.brief ? 3e3 : 1e5;
+      const Scene scene{.until_time = options.brief ? 3e3 : 1e5,
+                        .dampers = {{.mass_ratio = 1e-8, .restitution = e, .wall_stiffness = 1e15}}};
       const Budget enough{.max_impacts = 5'000'000};
       Engine engine = Exact{.budget = enough};
       if (rigid) engine = Restitution{.accumulation_tolerance = 1e-13, .budget = enough};
@@ -152,10 +149,7 @@ Check accumulation_at_a_crossing() {
   Check check = about("a bounce-down that ends as x crosses zero, to the last bit", "all");
   for (const double e : {0.2, 0.4, 0.6, 0.8}) {
     for (const double nu : {1e-8, 0.02, 1.0}) {
-      Scene scene;
-      scene.damper().restitution = e;
-      scene.damper().mass_ratio = nu;
-      scene.until_time = 3;
+      Scene scene{.until_time = 3, .dampers = {{.mass_ratio = nu, .restitution = e}}};
       const double edge = last_bit(0.6, 1000, [&](double x0) {
         scene.x0 = x0;
         const Run run = simulate(scene, Restitution{}, {.contacts = true});
@@ -183,11 +177,7 @@ Check lossless(const Options& options, const Engine& engine) {
   std::visit([&](auto& options_of_it) { options_of_it.budget.max_impacts = impacts; }, budgeted);
   Worst worst;
   for (const double x0 : {6.0, 0.4}) {
-    Scene scene;
-    scene.damper().restitution = 1;
-    scene.x0 = x0;
-    scene.damper().w0 = 0.3;
-    scene.until_time = 1e12;
+    const Scene scene{.x0 = x0, .until_time = 1e12, .dampers = {{.restitution = 1, .w0 = 0.3}}};
     ++check.cases;
     say(check.what);
     const Run run = simulate(scene, budgeted, {.half_cycles = false, .energy = true});
@@ -219,9 +209,12 @@ std::vector<Check> no_wall(const Options& options) {
         Flight{0.3, 1e-9, 0, 0, 1, 1e9}, Flight{0.3, 0.5, 0, 0, 1, 1e9}, Flight{0.45, 5, 0, 0, 1, 1e9},
         Flight{1e-8, 0, 1e-10, 0, 1, 1e9}, Flight{0.1, 0, 0, 0.1, 2, forced_end},
         Flight{0, 0.01, 0, 0.002, 1, forced_end}, Flight{0, 0, 0, 1e-3, 0.5, forced_end}}) {
-    Scene scene;
-    scene.x0 = f.x0, scene.damping_ratio = f.zeta, scene.damper().y0 = 0.5 - f.x0, scene.damper().w0 = f.w0;
-    scene.force_amplitude = f.f0, scene.force_frequency = f.omega, scene.until_time = f.end;
+    const Scene scene{.damping_ratio = f.zeta,
+                      .x0 = f.x0,
+                      .force_amplitude = f.f0,
+                      .force_frequency = f.omega,
+                      .until_time = f.end,
+                      .dampers = {{.y0 = 0.5 - f.x0, .w0 = f.w0}}};
     for (const Engine& engine : both) {
       ++none.cases;
       Watch watch;  // not simulate(), which asks for half cycles wherever impacts are wanted
@@ -266,10 +259,10 @@ Check crawling() {
   for (const Hard& h : {Hard{-least, 2, 0, 0, 1, 0.03}, Hard{0, 2, 0, 0, 0.6, 0.03},
                         Hard{-6, 0, 0, 0, 1, 0.1}, Hard{6, 0, 1, 0, 1, 0.1}, Hard{6, 0, 1, 0, 0, 3},
                         Hard{6, 0, 1e-15, -1e-14, 0.6, 3}, Hard{1, 0, 0, 0, 0.999999, 3}}) {
-    Scene scene;
-    scene.x0 = h.x0, scene.v0 = h.v0, scene.damper().y0 = h.y0, scene.damper().w0 = h.w0,
-    scene.damper().restitution = h.e;
-    scene.until_time = h.end;
+    const Scene scene{.x0 = h.x0,
+                      .v0 = h.v0,
+                      .until_time = h.end,
+                      .dampers = {{.restitution = h.e, .y0 = h.y0, .w0 = h.w0}}};
     ++check.cases;
     const bench::Counts counts = bench::count(scene, Exact{.budget = few_impacts}).counts;
     const double operations = double(counts.sincos + counts.exponentials + counts.square_roots +
@@ -295,10 +288,10 @@ Check long_times() {
   for (const Slow& s : {Slow{0.2, 0.5, 1e-9, 0.6, 0}, Slow{0.2, 0.5, -1e-8, 0.2, 0},
                         Slow{0.3, 0.5, 1e-9, 1, 0}, Slow{0, -0.3, 0, 0, 0}, Slow{1, -0.3, 0, 0, 0.1},
                         Slow{0, 1.2, 0, 0.6, 1e-9}, Slow{1e-9, 0.5, 1e-9, 0.6, 2}, Slow{6, 0, 0, 0.6, 3}}) {
-    Scene scene;
-    scene.x0 = s.x0, scene.damper().y0 = s.y0, scene.damper().w0 = s.w0, scene.damper().restitution = s.e,
-    scene.damping_ratio = s.zeta;
-    scene.until_time = 1e9;
+    const Scene scene{.damping_ratio = s.zeta,
+                      .x0 = s.x0,
+                      .until_time = 1e9,
+                      .dampers = {{.restitution = s.e, .y0 = s.y0, .w0 = s.w0}}};
     for (const Engine& engine : both) {
       if (std::holds_alternative<Restitution>(engine) && !(s.y0 >= 0 && s.y0 <= 1)) continue;
       ++check.cases;

@@ -24,7 +24,6 @@
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/simulate.hpp"
 #include "stress.hpp"
-#include "watch.hpp"
 
 namespace stress {
 
@@ -96,10 +95,7 @@ struct Growth {
 };
 
 Growth growth_in_flight(Damper damper, double zeta, double by_limit) {
-  Scene scene;
-  scene.damping_ratio = zeta;
-  scene.x0 = 1e-9;
-  scene.damper().y0 = 0.5;
+  Scene scene{.damping_ratio = zeta, .x0 = 1e-9, .dampers = {{.y0 = 0.5}}};
   Cem cem{.damper = damper, .unstable = true};
   cem.time_step = 2 * by_limit;
   const double closed_form = closed_form_growth(Damper::centred, zeta, 2 * by_limit);
@@ -110,9 +106,7 @@ Growth growth_in_flight(Damper damper, double zeta, double by_limit) {
 }
 
 Growth growth_in_contact(Damper damper, double e, double by_limit, double& limit_error) {
-  Scene scene;
-  scene.damper().restitution = e;
-  scene.damper().wall_stiffness = 1e10;
+  Scene scene{.dampers = {{.restitution = e, .wall_stiffness = 1e10}}};
   const double nu = scene.damper().mass_ratio, k = scene.damper().wall_stiffness;
   const double omega = std::sqrt(k * (1 + nu) / nu), z = zeta_m_closed_form(e) * std::sqrt(1 + nu);
   const double limit = closed_form_limit(damper, z);
@@ -221,8 +215,7 @@ double delivered_restitution(Scene scene, Cem cem, double part_of_step) {
 }
 
 std::vector<Check> restitution_checks(const Options& options) {
-  Scene scene;
-  scene.damper().wall_stiffness = 1e10;
+  const Scene scene{.dampers = {{.wall_stiffness = 1e10}}};
   std::string table = "# Error of the delivered restitution, e = 0.6, by steps per contact.\n";
   std::vector<Check> checks;
   for (const Scheme& scheme : schemes) {

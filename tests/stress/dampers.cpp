@@ -65,7 +65,7 @@ std::vector<Check> random_lists(const Options& options) {
   std::vector<Part> parts(static_cast<std::size_t>(blocks));
   Progress progress("random lists of dampers");
   std::atomic<std::int64_t> done{0};
-  for_each_index(blocks, options.threads, [&](std::int64_t b) {
+  for_each_index(blocks, {}, [&](std::int64_t b) {
     Part& part = parts[std::size_t(b)];
     for (std::int64_t i = b * block; i < std::min(count, (b + 1) * block); ++i) {
       const std::uint64_t seed = first + std::uint64_t(i);
@@ -94,18 +94,17 @@ std::vector<Check> random_lists(const Options& options) {
   return checks;
 }
 
-// When the damper strikes first, or leaves its wall first.
+// When it is first the damper's turn: of its impacts, or of the ends of its contacts.
+double first_of(const std::vector<double>& times, const std::vector<std::int32_t>& dampers, int damper) {
+  const auto at = std::ranges::find(dampers, damper);
+  return at == dampers.end() ? std::numeric_limits<double>::infinity()
+                             : times[std::size_t(at - dampers.begin())];
+}
 double first_impact(const Run& run, int damper) {
-  const Impacts& impacts = *run.impacts;
-  for (std::size_t i = 0; i < impacts.time.size(); ++i)
-    if (impacts.damper[i] == damper) return impacts.time[i];
-  return std::numeric_limits<double>::infinity();
+  return first_of(run.impacts->time, run.impacts->damper, damper);
 }
 double first_end_of_contact(const Run& run, int damper) {
-  const Contacts& contacts = *run.contacts;
-  for (std::size_t i = 0; i < contacts.end.size(); ++i)
-    if (contacts.damper[i] == damper) return contacts.end[i];
-  return std::numeric_limits<double>::infinity();
+  return first_of(run.contacts->end, run.contacts->damper, damper);
 }
 Run watched(const Scene& scene, const Engine& engine) {
   return simulate(scene, engine, {.impacts = true, .contacts = true});
@@ -118,11 +117,8 @@ Check coincident(const Options& options) {
   for (int count = 2; count <= (options.brief ? 4 : 10); ++count) {
     for (const Engine& engine : both) {
       for (const bool opposite : {false, true}) {
-        Scene scene;
-        scene.x0 = 3, scene.until_time = 2;
-        scene.dampers = {{.clearance = 1, .y0 = 0.3, .w0 = 0.1}};
-        Scene first = scene;
-        const double at = first_impact(watched(first, engine), 0);
+        Scene scene{.x0 = 3, .until_time = 2, .dampers = {{.clearance = 1, .y0 = 0.3, .w0 = 0.1}}};
+        const double at = first_impact(watched(scene, engine), 0);
         for (int i = 1; i < count; ++i) {
           SceneDamper damper{
               .mass_ratio = 0.01 * (1 + i % 3), .restitution = 0.1 * i, .wall_stiffness = 1e3 * i};
@@ -161,9 +157,8 @@ Check changing_together() {
   Check check = about("one leaves its wall as another meets its own, to the last bit, and beside it", "all");
   for (const Engine& engine : both) {
     for (const double k : {1e2, 1e4, 1e7}) {
-      Scene scene;
-      scene.x0 = -2, scene.until_time = 4;
-      scene.dampers = {{.clearance = 4, .wall_stiffness = k}};  // pressed to its left wall at first
+      // Pressed to its left wall at first.
+      const Scene scene{.x0 = -2, .until_time = 4, .dampers = {{.clearance = 4, .wall_stiffness = k}}};
       const double at = first_end_of_contact(watched(scene, engine), 0);
       SceneDamper damper{
           .mass_ratio = 0.05, .restitution = 0.4, .clearance = 5, .wall_stiffness = k, .w0 = -1};

@@ -48,8 +48,8 @@ Agreement agreement(Scene scene) {
   // holds.
   const bool at_rest_on_a_wall = (scene.damper().y0 == 0 || scene.damper().y0 == 1) && scene.damper().w0 == 0;
   if (!(scene.damper().restitution >= 0.05) || at_rest_on_a_wall) return result;
-  Restitution rigid;
-  rigid.budget.max_impacts = compared_impacts + 1;  // the last found may lie at the very end: not compared
+  // The last found may lie at the very end: not compared.
+  const Restitution rigid{.budget = {.max_impacts = compared_impacts + 1}};
   const Impacts reference = first_impacts(scene, rigid);
   if (reference.time.size() < 3) return result;
   const std::size_t count = reference.time.size() - 1;
@@ -67,9 +67,7 @@ Agreement agreement(Scene scene) {
   const double shortest = std::min({gap, least / acceleration, 1.0 / (1 + scene.force_frequency)});
   if (!(least > 0.02 * size && shortest > 1e-3)) return result;
 
-  Exact compliant;
-  compliant.calibration = Calibration::two_body;
-  compliant.budget.max_impacts = std::int64_t(count);
+  const Exact compliant{.calibration = Calibration::two_body, .budget = {.max_impacts = std::int64_t(count)}};
   const auto stiffness = [&](double tau) {
     const double z = zeta_m_closed_form(scene.damper().restitution);
     const double omega = half_turn<double>() / tau / std::sqrt(1 - z * z);
@@ -126,14 +124,11 @@ Case run(std::uint64_t seed) {
   std::int64_t impacts = 0;
   Scene scene = scene_of(seed, impacts);
   Case result;
-  Exact exact;
-  exact.budget.max_impacts = impacts;
-  result.examined[0] = examine(scene, exact);
+  const Budget budget{.max_impacts = impacts};
+  result.examined[0] = examine(scene, Exact{.budget = budget});
   result.agreement = agreement(scene);
-  Restitution rigid;
-  rigid.budget.max_impacts = impacts;
   scene.damper().y0 = std::fmin(std::fmax(scene.damper().y0, 0), 1);
-  result.examined[1] = examine(scene, rigid);
+  result.examined[1] = examine(scene, Restitution{.budget = budget});
   result.seconds = seconds() - begin;
   return result;
 }
@@ -175,8 +170,7 @@ struct Tally {
       if (!one.agreement.broken.empty()) agreement.miss(named(seed, "both", one.agreement.broken));
     }
     slowest.push_back({one.seconds, seed});
-    std::sort(slowest.rbegin(), slowest.rend());
-    if (slowest.size() > 10) slowest.resize(10);
+    keep_ten();
   }
   void add(const Tally& part) {
     for (std::size_t e = 0; e < 2; ++e) {
@@ -190,6 +184,9 @@ struct Tally {
     most_ratio = std::max(most_ratio, part.most_ratio);
     distance.take(part.distance);
     slowest.insert(slowest.end(), part.slowest.begin(), part.slowest.end());
+    keep_ten();
+  }
+  void keep_ten() {
     std::sort(slowest.rbegin(), slowest.rend());
     if (slowest.size() > 10) slowest.resize(10);
   }
@@ -218,7 +215,7 @@ std::vector<Check> random_scenes_of_all_kinds(const Options& options) {
   std::mutex mutex;
   Progress progress("random scenes");
   double slowest = 0;
-  for_each_index(blocks, options.threads, [&](std::int64_t b) {
+  for_each_index(blocks, {}, [&](std::int64_t b) {
     Tally part;
     for (std::int64_t i = b * block; i < std::min(count, (b + 1) * block); ++i) {
       const std::uint64_t seed = first + std::uint64_t(i);

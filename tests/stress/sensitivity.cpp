@@ -130,8 +130,7 @@ void decide(Check& check, double error, double allowed, const std::string& which
 Check free_flight() {
   Check check =
       about("free flight: a perturbation neither grows nor shrinks, exponent per half cycle", "1e-3");
-  Scene scene;
-  scene.x0 = 0.2, scene.damper().y0 = 0.3, scene.until_time = 1000;
+  const Scene scene{.x0 = 0.2, .until_time = 1000, .dampers = {{.y0 = 0.3}}};
   const std::vector<HalfCycle> rows = half_cycles_of(scene);
   Worst worst;
   for (const Section& direction : {Section{1, 0, -1}, Section{0, 1, 0}}) {  // those in which nothing drifts
@@ -167,13 +166,15 @@ std::vector<Check> one_impact() {
       const double amplitude = fold_amplitude(e) + part * (equal_spacing_amplitude(e) - fold_amplitude(e));
       const auto motion = single_impact(e, amplitude);
       if (!motion) continue;
-      Scene scene;
-      scene.damper().mass_ratio = 1e-9, scene.damper().restitution = e, scene.damper().wall_stiffness = 1e6;
       // Left at the phase at which the closed form leaves the left wall, with its speed; then settled.
       const double b = (1 - e) / (1 + e), v = motion->speed;
       const double x = -(std::numbers::pi * v - 1) / 2;  // A cos(theta) of the other wall, mirrored
-      scene.x0 = x, scene.v0 = b * v, scene.damper().y0 = 0, scene.damper().w0 = v - scene.v0;
-      scene.until_time = 500;
+      const Scene scene{
+          .x0 = x,
+          .v0 = b * v,
+          .until_time = 500,
+          .dampers = {
+              {.mass_ratio = 1e-9, .restitution = e, .wall_stiffness = 1e6, .y0 = 0, .w0 = v - b * v}}};
       const Section settled = half_cycles_of(scene).back().state;
       const auto [t, d] = trace_and_determinant(scene, settled);
       const double expected = 2 * e + (1 + e) * (1 + e) * std::numbers::pi * x / (2 * v);
@@ -297,7 +298,7 @@ std::vector<Check> sensitivity(const Options& options) {
   std::atomic<std::int64_t> done{0};
   const std::int64_t runs = std::int64_t(all.size()) * ensemble.members;
   std::mutex mutex;
-  for_each_index(runs, options.threads, [&](std::int64_t i) {
+  for_each_index(runs, {}, [&](std::int64_t i) {
     Followed& followed = all[std::size_t(i / ensemble.members)];
     const std::size_t member = std::size_t(i % ensemble.members);
     const Scene scene = ensemble_of(followed.scene, ensemble)[member];

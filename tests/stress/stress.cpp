@@ -1,6 +1,6 @@
 // The stress program: what an engine must stand, and how fast it is when it does not matter.
 //
-//   impact-damper-stress [--brief] [--only SUBJECT] [--seed N] [--scenes N] [--threads N] FOLDER
+//   impact-damper-stress [--brief] [--only SUBJECT] [--seed N] FOLDER
 //
 // Writes FOLDER/stress.md and stress.json (the table, and every miss with what repeats it), and the tables
 // that are drawn; prints the first. Subjects: central-differences, random, aimed, dampers, sensitivity; all
@@ -80,17 +80,14 @@ constexpr std::array<Subject, 5> subjects{{{"central-differences", central_diffe
                                            {"sensitivity", sensitivity, false}}};
 
 int usage(const std::string& what) {
-  std::cerr
-      << "impact-damper-stress: " << what
-      << "\nusage: impact-damper-stress [--brief] [--only SUBJECT] [--seed N] [--scenes N] [--threads N] "
-         "FOLDER\n";
+  std::cerr << "impact-damper-stress: " << what
+            << "\nusage: impact-damper-stress [--brief] [--only SUBJECT] [--seed N] FOLDER\n";
   return 2;
 }
 
 int run(const std::vector<std::string>& arguments) {
   Options options;
   std::string only;
-  std::optional<std::int64_t> scenes;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const std::string& word = arguments[i];
     if (word == "--brief") {
@@ -102,23 +99,17 @@ int run(const std::vector<std::string>& arguments) {
       return usage(word + ": needs a value");
     } else if (word == "--only") {
       only = arguments[++i];
-    } else {
+    } else if (word == "--seed") {
       const std::optional<std::int64_t> number = impact_damper::parse_integer(arguments[++i]);
       if (!number || *number < 1) return usage(word + ": must be a whole number >= 1, got " + arguments[i]);
-      if (word == "--seed") {
-        options.seed = static_cast<std::uint64_t>(*number);
-      } else if (word == "--scenes") {
-        scenes = number;
-      } else if (word == "--threads") {
-        options.threads = number;
-      } else {
-        return usage("unknown option " + word);
-      }
+      options.seed = static_cast<std::uint64_t>(*number);
+    } else {
+      return usage("unknown option " + word);
     }
   }
   if (options.folder.empty()) return usage("FOLDER must be given");
   options.scene_folder = SCENES_FOLDER;
-  options.scenes = scenes.value_or(options.brief ? 10'000 : 1'000'000);
+  options.scenes = options.brief ? 10'000 : 1'000'000;
   if (options.seed && only.empty()) only = "random";
 
   std::filesystem::create_directories(options.folder);

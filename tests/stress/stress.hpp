@@ -8,11 +8,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "engines/observed.hpp"
 #include "impact_damper/analysis/parallel.hpp"
 #include "impact_damper/run.hpp"
 
@@ -66,6 +68,35 @@ class Progress {
 void say(const std::string& what);  // a line on standard error
 double seconds();                   // of a steady clock: for progress only, no result holds a time
 
+// An observer that asks an engine for nothing but impacts, and for samples when it is told to.
+struct Sample {
+  double time = 0, x = 0, v = 0, y = 0, w = 0;
+};
+
+class Watch : public impact_damper::TestObserver<double> {
+ public:
+  void impact(double time, impact_damper::Wall, double, double) override {
+    ++impacts;
+    last_impact = time;
+  }
+  double next_sample() const override { return sample_at; }
+  // Keeps it; the next is `every` later, counted from the first.
+  void sample(double time, double x, double v, double y, double w) override {
+    if (samples.empty()) first_ = time;
+    samples.push_back({time, x, v, y, w});
+    sample_at = every > 0 ? first_ + every * double(samples.size()) : std::numeric_limits<double>::infinity();
+  }
+
+  double sample_at = std::numeric_limits<double>::infinity();
+  double every = 0;  // 0: no more than one sample
+  std::vector<Sample> samples;
+  std::int64_t impacts = 0;
+  double last_impact = 0;
+
+ private:
+  double first_ = 0;
+};
+
 // Each broken promise in words.
 enum class Promise {
   finite,          // every number of the run
@@ -105,10 +136,9 @@ double steps_from(double value, int ulps);
 double last_bit(double low, double high, const std::function<bool(double)>& predicate);
 
 struct Options {
-  bool brief = false;                 // the same with smaller counts
-  std::optional<std::uint64_t> seed;  // this case only, told in full
-  std::int64_t scenes = 0;            // how many random ones
-  impact_damper::Threads threads;
+  bool brief = false;                  // the same with smaller counts
+  std::optional<std::uint64_t> seed;   // this case only, told in full
+  std::int64_t scenes = 0;             // how many random ones
   std::filesystem::path folder;        // for tables that are drawn
   std::filesystem::path scene_folder;  // the scenes of the figures
 };
