@@ -486,7 +486,7 @@ Command verify_command() {
                   {"--members", "N",
                    "use the first N of each ensemble, the run file itself among them;\n1 to 100, default 16; "
                    "--power simulates them"},
-                  {"-o,--output", "FILE", "write the verdicts as JSON"},
+                  {"-o,--output", "FILE", "write the verdicts, or with --power the changes, as JSON"},
                   {"--markdown", "FILE", "write the table, with every explanation, as Markdown"},
                   threads_option()},
       .footer =
