@@ -221,7 +221,7 @@ std::string found_text(const PowerNumber& number, const std::optional<Direction>
   if (!direction) return "-";
   if (!direction->turn) return "none up to " + rounded_text(direction->searched_to.value, 4);
   const Trial& trial = direction->turn->trial;
-  const std::string to = "to " + rounded_text(trial.value, 4);
+  std::string to = "to " + rounded_text(trial.value, 4);
   if (number.value == 0) return to;
   return (trial.change >= 1 ? "a factor of " + rounded_text(1 + trial.change, 2)
                             : rounded_text(100 * trial.change, 2) + " %") +

@@ -123,7 +123,8 @@ std::string rounded_text(double value, int digits) { return printed("%.*g", digi
 
 std::errc read(std::string_view text, double& value) {
   // strtod accepts more than decimal numbers: blanks, a plus sign, hexadecimal digits, "nan".
-  if (text.empty() || text.starts_with('+') || text.find_first_not_of("0123456789.eE+-") != text.npos)
+  if (text.empty() || text.starts_with('+') ||
+      text.find_first_not_of("0123456789.eE+-") != std::string_view::npos)
     return std::errc::invalid_argument;
   const std::string ended(text);
   char* end = nullptr;
