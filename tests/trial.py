@@ -15,6 +15,8 @@ import sys
 source = pathlib.Path(__file__).resolve().parents[1]
 program, folder = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
 words = sys.argv[3:]
+if source.is_relative_to(folder):
+    sys.exit(f"{folder} is not emptied: the project is in it")
 shutil.rmtree(folder, ignore_errors=True)
 folder.mkdir(parents=True)
 faults = []
