@@ -1,11 +1,11 @@
-// Curves, and functions of them that measures and figures share; parts of the table of measures.
+// What measures and figures share: curves, statistics of them, and the records of a run. Each source
+// measures_*.cpp makes one part of the table of measures, by the functions at the end.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <stdexcept>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -16,8 +16,8 @@
 
 namespace impact_damper {
 
-// Return the last entries of a measure's row: the names of the numbers that it requires, and how many scenes
-// and responses a claim may name.
+// Return the last entries of a measure's row (Measure): the names of the numbers that its call must give, and
+// the least and the greatest number of scenes, or of responses, that the call may name.
 template <class... Name>
 std::vector<std::string_view> numbers(const Name&... names) {
   return {names...};
@@ -25,6 +25,7 @@ std::vector<std::string_view> numbers(const Name&... names) {
 constexpr Count scenes(std::size_t least, std::size_t most) { return {least, most}; }
 constexpr Count responses(std::size_t least, std::size_t most) { return {least, most}; }
 
+// Points in the order in which they were found, by time or along an axis; x and y have equal lengths.
 struct Curve {
   std::vector<double> x, y;
 
@@ -34,11 +35,12 @@ struct Curve {
   }
 };
 
-using SweepWay = std::vector<SteadyState> Sweep::*;
+using SweepWay = std::vector<SteadyState> Sweep::*;  // &Sweep::up or &Sweep::down
 
-// Returns for each start the curve that represents several steady motions under the same force: the largest
-// amplitude of the motions of one way at each value of the axis. All responses have the same values and
-// equally many starts. NaN where one of them has no amplitude, which may be the largest.
+// Returns one curve for each start of the responses, of which there must be one or more, on the same axis and
+// with equally many starts: at each value of the axis the largest of the amplitudes that the responses'
+// motions have there, swept that way. A motion without amplitude might have had the largest, so that there
+// the curve is NaN.
 inline std::vector<Curve> largest_amplitudes(const std::vector<const SweepResponse*>& responses,
                                              SweepWay way) {
   const std::vector<double> values = responses.front()->axis.values();
@@ -58,31 +60,33 @@ inline std::vector<Curve> largest_amplitudes(const std::vector<const SweepRespon
   return curves;
 }
 
+// An upper end of amplitudes that excludes none.
 inline constexpr double everywhere = std::numeric_limits<double>::infinity();
 
-// Returns one ordinate over the fitted amplitude, in the order of time, where the amplitude lies in [from,
-// to]. The first point is left out by default: row 0, which ran from the release and is less than a half
-// cycle, is among the peaks that it is fitted to.
+// Whether a loss curve has its first point. That is fitted to the run's first peaks, among them the one of
+// the time from the release to the first zero crossing, which is less than a half cycle.
 enum class FirstPoint { left_out, counted };
+// Returns the ordinate `which` over the fitted amplitude, in units of the clearance, for amplitudes in [from,
+// to]. Throws std::invalid_argument where the run did not record its half cycles.
 Curve loss_curve(const Run& run, LossOrdinate which, const LossFactorOptions& fit, double from = 0,
                  double to = everywhere, FirstPoint first = FirstPoint::left_out);
-// Returns it by the averaging of the analysis, where the call asks for it: in its [from, to].
+// The same by the averaging of AnalysisOptions::loss, for the numbers "from" and "to" of the measure's call.
 Curve loss_curve(const Asked& asked, const Run& run, LossOrdinate which,
                  FirstPoint first = FirstPoint::left_out);
 
-// Return the slope of y against x, and of ln y against ln x, by least squares.
+// Return the slope of y against x, and of ln y against ln x, by least squares. NaN for fewer than two points.
 double slope(const Curve& curve);
 double log_slope(Curve curve);
 
-// Returns the mean ordinate of each curve, for each of the bins that all of them reach. The bins are equal in
-// ln x on [from, to].
+// Divides [from, to] into bins of equal width in ln x. Returns for each bin in which every curve has a point,
+// from small x to large, the mean ordinate of each curve.
 std::vector<std::vector<double>> bin_means(const std::vector<Curve>& curves, double from, double to,
                                            int bins);
-// Returns how far curves lie apart at equal x: the largest minus the least of their bin means divided by the
-// mean of these, in percent, for each of these bins.
+// Returns how far the curves lie apart in each of these bins, in percent: (largest - least)/mean of their
+// mean ordinates.
 std::vector<double> spreads_percent(const std::vector<Curve>& curves, double from, double to, int bins);
 
-// Return the mean, and the largest, of these. NaN if there is none.
+// Return the mean, and the largest, of the values. NaN if there is none.
 inline double mean(const std::vector<double>& values) {
   double sum = 0;
   for (const double value : values) sum += value;
@@ -92,6 +96,7 @@ inline double most(const std::vector<double>& values) {
   return values.empty() ? std::numeric_limits<double>::quiet_NaN() : *std::ranges::max_element(values);
 }
 
+// Return what the run recorded, or throw std::invalid_argument.
 inline const HalfCycles& half_cycles_of(const Run& run) {
   if (!run.half_cycles) throw std::invalid_argument("half_cycles: the run did not record them");
   return *run.half_cycles;
@@ -105,8 +110,8 @@ inline const Impacts& impacts_of(const Run& run) {
 // The parts of the table, by subject.
 std::vector<Measure> loss_measures();    // loss factor curves
 std::vector<Measure> damper_measures();  // several dampers
-std::vector<Measure> regime_measures();  // bounce-down, windows, impact failure, phases
-std::vector<Measure> model_measures();   // engine against engine, wall and time step, the paper's slips
+std::vector<Measure> regime_measures();  // bounce-down, regular impacts, impact failure, phases of impacts
+std::vector<Measure> model_measures();   // engines and settings compared, errors of the paper's formulas
 std::vector<Measure> steady_measures();  // steady motions under a force
 
 }  // namespace impact_damper
