@@ -22,6 +22,15 @@ folder.mkdir(parents=True)
 faults = []
 
 
+def stopped(*error):
+    """What was found before a script is stopped by an error, and may have caused it, is shown before that."""
+    tell_faults()
+    sys.__excepthook__(*error)
+
+
+sys.excepthook = stopped
+
+
 def demand(holds, what):
     if not holds:
         faults.append(what)
@@ -94,8 +103,12 @@ def sealed(text):
     return f'{body}, "sha256": "{hashlib.sha256(body.encode()).hexdigest()}"}}\n}}\n'
 
 
-def finish(summary="", skipped=()):
-    """Exit code 77 where nothing is wrong, but not all could be tested here."""
-    print(*(f"FAULT: {str(fault)[:3000]}" for fault in faults), *(f"SKIPPED: {what}" for what in skipped), f"{summary}{len(faults)} faults",
-          sep="\n")
+def tell_faults(most=None):
+    print(*(f"FAULT: {str(fault)[:3000]}\n" for fault in faults[:most]), sep="", end="", flush=True)
+
+
+def finish(summary="", skipped=(), most=None):
+    """Shows all faults, or the first `most`. Exit code 77 where nothing is wrong, but not all could be tested here."""
+    tell_faults(most)
+    print(*(f"SKIPPED: {what}" for what in skipped), f"{summary}{len(faults)} faults", sep="\n")
     sys.exit(1 if faults else 77 if skipped else 0)

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Holds CITATION.cff and codecheck.yml, as paper/refresh made them, and the ro-crate-metadata.json of archives against the rules of their
 formats, as far as these files need them, against each other, and against the project; and sees each rule find its fault in a changed
 copy.

@@ -9,7 +9,7 @@ import signal
 import sys
 import time
 
-from trial import call, demand, demand_valid, finish, folder, read_json, run, source, start, write
+from trial import call, demand, demand_valid, finish, folder, read, read_json, run, source, start, write
 
 scene = source / "data/examples/mast.json"
 example = source / "data/examples/mast_measured.csv"
@@ -31,7 +31,10 @@ record("again.csv")
 demand((folder / "again.csv").read_bytes() == example.read_bytes(), "mast_measured.csv is not what make_record.py makes")
 
 # The fit, by the engine with rigid walls as the record has them.
-text, found = compare(example, "--engine", "restitution")
+text, found = compare(example, "--engine", "restitution", "--threads", 1)
+first = read("out.json")
+compare(example, "--engine", "restitution", "--threads", 3)
+demand(read("out.json") == first, "other bytes with another number of threads")
 demand_valid("comparison", found, "out.json")
 call("check", "comparison", "out.json")
 for each in found["fit"]["parameters"]:

@@ -222,10 +222,9 @@ def main():
             if allowed[kind, file] != beyond_schemas:
                 verdict = "allows" if allowed[kind, file] else "rejects"
                 faults.append(f"the {kind} schema {verdict} {file}, of which the program says: {lines}")
-    del faults[20:]
     if not faults:
         shutil.rmtree(folder)
-    finish(f"{exceptions} rejected for what no schema can express, ")
+    finish(f"{exceptions} rejected for what no schema can express, ", most=20)
 
 
 main()

@@ -1,4 +1,4 @@
-"""What the tests of this folder share: a tree to work in, and processes to end from outside.
+"""What the tests of this folder share: a tree to work in.
 
 A scratch tree is the project as far as `make figures` and `make verify` go: its Makefile, figures/, data/ and the
 program as it is built, but no sources. What is made there is made by the project's own rules.

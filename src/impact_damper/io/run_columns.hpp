@@ -1,6 +1,6 @@
 // The columns of a run as one table, in the order of a run file. Run files, CSV and the interface for C are
 // made from it; the Python module and the package for browsers use that interface. The schema of run files
-// and the package's types are compared with it (tests/run_columns.cpp). A section is one member of Run:
+// and the package's types are compared with it (tests/run_file.cpp). A section is one member of Run:
 // half_cycles, impacts, contacts, energy or history.
 #pragma once
 
