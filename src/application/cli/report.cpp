@@ -1,6 +1,5 @@
 // `report`: writes a page about one scene of the user's own.
 #include <filesystem>
-#include <map>
 
 #include "application/report/page.hpp"
 #include "commands.hpp"

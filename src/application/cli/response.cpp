@@ -36,11 +36,6 @@ struct Request {
   Format format = Format::json;
   bool in_si = false;  // the CSV
   bool quiet = false;
-
-  template <class Rule>
-  const Rule& rule() const {
-    return std::get<Rule>(rules);
-  }
 };
 
 // An option that only some kinds have.
@@ -398,7 +393,7 @@ void warn_of(const LyapunovExponents& found, std::size_t numbers) {
 }
 
 Response swept(const Request& asked) {
-  const auto& rule = asked.rule<SteadyRule>();
+  const auto& rule = std::get<SteadyRule>(asked.rules);
   const Scene& scene = asked.file.scene;
   const Axis& axis = asked.axes[0];
   Progress progress("motions", 2 * axis.count * std::int64_t(asked.starts.size()));
@@ -409,7 +404,7 @@ Response swept(const Request& asked) {
 }
 
 Response mapped(const Request& asked) {
-  const auto& rule = asked.rule<BasinRule>();
+  const auto& rule = std::get<BasinRule>(asked.rules);
   const Scene& scene = asked.file.scene;
   const Axis &first = asked.axes[0], &second = asked.axes[1];
   Progress progress("points", first.count * second.count);
@@ -419,7 +414,7 @@ Response mapped(const Request& asked) {
 }
 
 Response followed(const Request& asked) {
-  const auto& rule = asked.rule<BranchRule>();
+  const auto& rule = std::get<BranchRule>(asked.rules);
   const Scene& scene = asked.file.scene;
   Progress progress("branches are followed", std::nullopt);
   const Branches found =
@@ -430,7 +425,7 @@ Response followed(const Request& asked) {
 
 Response averaged(const Request& asked) {
   const Scene& scene = asked.file.scene;
-  const auto [periods, discard] = asked.rule<Averaging>();
+  const auto [periods, discard] = std::get<Averaging>(asked.rules);
   Progress progress("periods", periods + discard);
   const LyapunovExponents found =
       lyapunov_exponents(scene, asked.engine, periods, discard, [&](std::int64_t done) {

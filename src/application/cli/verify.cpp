@@ -121,9 +121,7 @@ std::string verdicts_text(const std::vector<Verified>& all, const std::vector<Op
   out.open_object(Layout::one_line);
   out.field("schema", "impact-damper/verdicts/1");
   out.new_line();
-  out.open_array("verdicts", Layout::lines);
-  for (const Verified& each : all) {
-    out.open_object(Layout::one_line);
+  out.objects("verdicts", Layout::lines, all, [&](const Verified& each) {
     out.field("claim", each.claim->id);
     write(out, each.ours);
     if (!each.also.empty()) out.open_object("also", Layout::one_line);
@@ -134,9 +132,7 @@ std::string verdicts_text(const std::vector<Verified>& all, const std::vector<Op
     }
     if (!each.also.empty()) out.close();
     out.fields("words", each.words, "verdict", name_of(each.verdict), "recorded", name_of(each.recorded));
-    out.close();
-  }
-  out.close();
+  });
   if (!open.empty()) {
     out.new_line();
     out.field("open", texts_of(open, &OpenStatement::id));
@@ -216,7 +212,7 @@ struct PowerTable {
   std::vector<PowerRow> rows;
 };
 
-// Returns "7.1 %, to 0.0214"; for a number that is 0 what is added to it.
+// Returns "7.1 %, to 0.0214"; for a number that is 0 "to 0.0214".
 std::string found_text(const PowerNumber& number, const std::optional<Direction>& direction) {
   if (!direction) return "-";
   if (!direction->turn) return "none up to " + rounded_text(direction->searched_to.value, 4);
@@ -312,17 +308,13 @@ std::string json_text(const PowerTable& table) {
   out.new_line();
   out.field("unsettled", table.unsettled);
   out.new_line();
-  out.open_array("numbers", Layout::lines);
-  for (const PowerRow& row : table.rows) {
-    out.open_object(Layout::one_line);
+  out.objects("numbers", Layout::lines, table.rows, [&](const PowerRow& row) {
     out.fields("of", row.number.of, "name", row.number.name, "value", row.number.value);
     write(out, "up", row.up);
     write(out, "down", row.down);
     out.new_line();
     out.field("noticed_by", row.number.noticed_by);
-    out.close();
-  }
-  out.close();
+  });
   out.close();
   return out.finish() + '\n';
 }

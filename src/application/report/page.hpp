@@ -20,7 +20,7 @@ std::string page_html(const Findings& findings, const std::vector<Drawing>& draw
                       const std::map<std::string, std::string>& svgs, std::string_view frame,
                       const std::map<std::string, std::string_view>& parts);
 
-// Return its sections as HTML, each from the findings: page_*.cpp.
+// Return its sections as HTML, each from the findings: page.cpp, page_*.cpp.
 std::string summary_html(const Findings& findings);   // a few sentences about everything
 std::string warnings_html(const Findings& findings);  // about the scene; may be empty
 std::string scene_html(const Findings& findings);

@@ -15,8 +15,8 @@
 namespace impact_damper {
 namespace {
 
-// The fields of a template, each with the text before it, and the text after the last one, which begins with
-// a brace if that does not close.
+// The fields of a template, each with the text before it, and the text after the last one, in which there
+// is a "{" if that one does not close.
 struct Field {
   std::string_view before;
   std::string name, form;

@@ -166,8 +166,8 @@ enum class Fields { allowed, needed };
 std::optional<std::string> problem_of_words(std::string_view words,
                                             const std::set<std::string, std::less<>>& names, Fields fields);
 
-// Returns the filled template. It must have no problem, and `spreads` all that it names; throws
-// std::invalid_argument otherwise.
+// Returns the filled template, which must have no problem. Throws std::invalid_argument if a name of its
+// fields is not in `spreads`.
 std::string in_words(std::string_view words, const NamedSpreads& spreads);
 
 // Returns what lies between `least` and `most` or, where they are equal, within the tolerance of it, in the

@@ -146,7 +146,7 @@ std::vector<Measure> steady_measures() {
       {"force_limit_ratio",
        "rising force at which the largest steady amplitude exceeds that of the largest F of the decay, A in "
        "[from, to], divided by this F (M14.7)",
-       [](const Asked& asked) -> Spread {
+       [](const Asked& asked) {
          return over_starts(asked, rising, [](const Curve& found, const Curve& needed) {
            if (needed.x.empty()) return no_number;
            for (std::size_t i = 0; i + 1 < found.x.size(); ++i) {
@@ -161,7 +161,7 @@ std::vector<Measure> steady_measures() {
       {"force_jump_ratio",
        "falling force at which the largest steady amplitude falls below 0.5, divided by the least F of the "
        "decay between from and the amplitude of its largest F in [from, to]",
-       [](const Asked& asked) -> Spread {
+       [](const Asked& asked) {
          constexpr double half_of_the_clearance = 0.5;
          return over_starts(asked, falling, [](const Curve& found, const Curve& needed) {
            std::size_t least = found.x.size();  // index of the least force from which on that holds

@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cmath>
 #include <exception>
-#include <stdexcept>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -65,7 +64,7 @@ std::optional<Trials> valid(Trials trials, IsValid is_valid) {
   return trials;
 }
 
-// Returns those of a scene; the two stops are numbers as well.
+// Returns the numbers of a scene; the two stops are numbers as well.
 std::vector<PowerNumber> numbers_of(const std::string& of, const Scene& scene) {
   std::vector<PowerNumber> numbers;
   const auto add = [&](const std::string& name, double value, const PowerNumber::Set& set) {
@@ -126,7 +125,7 @@ constexpr std::array<AnalysisNumber, 9> analysis_numbers{
      {"members", [](PowerState& s) -> In { return &s.ensemble.members; }, 1, 64, 1, from_reference},
      {"ensemble_step", [](PowerState& s) -> In { return &s.ensemble.step; }, 0, 0, 0, from_reference}}};
 
-// Returns those of the analysis and of the columns; `state` has nothing changed.
+// Returns the numbers of the analysis and of the columns; `state` has nothing changed.
 std::vector<PowerNumber> numbers_of(PowerState state) {
   std::vector<PowerNumber> numbers;
   const auto any = [](double) { return true; };

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "application/reproduction/measures_parts.hpp"
 #include "application/reproduction/series.hpp"

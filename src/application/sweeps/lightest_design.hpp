@@ -118,12 +118,11 @@ std::int64_t least_neighbours_of(double share);
 std::vector<double> steps_between(DesignRange range, double ratio);
 
 // Returns question and answer as JSON, schema "impact-damper/design/1" (data/schema/design.schema.json).
-// The question's scene must have
-// secondary_mass and clearance.
+// The question's scene must have secondary_mass and clearance.
 std::string design_text(const DesignQuestion& question, const DesignAnswer& answer);
 
-// Returns a force of an answer in unit_of(Dimension::force, question.in_units). The
-// question's scene must then have a clearance.
+// Returns a force of an answer in unit_of(Dimension::force, question.in_units). Unless it is in units, the
+// question's scene must have a clearance.
 double force_in_unit(double force, const DesignQuestion& question);
 
 }  // namespace impact_damper

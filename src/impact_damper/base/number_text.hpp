@@ -55,9 +55,9 @@ std::string filled(Pattern<std::type_identity_t<Values>...> pattern, const Value
   return with_values(pattern.text, {value_text(values)...});
 }
 
-// The same by printf and strtod, with the same text as std::to_chars, for standard libraries whose <charconv>
-// supports integers only (LLVM's up to version 13, with which WebAssembly is compiled on Debian 12). Correct
-// only in the locale "C", the only one there.
+// Numbers as text and back by printf and strtod, with the text of std::to_chars, for standard libraries whose
+// <charconv> supports integers only (LLVM's up to version 13, with which WebAssembly is compiled on Debian
+// 12). Correct only in the locale "C", the only one there.
 namespace by_c_library {
 
 // Returns the text of std::to_chars(value): the shortest that reads back as `value`.

@@ -93,14 +93,10 @@ void write_numbers(JsonWriter& out, const AnyScene& scene, bool one, const Field
   for (const auto& each : fields)
     if (one || each.number.own) write(each.name, each.number.in(scene));
   if (one) return;
-  out.open_array("dampers", layout);
-  for (const auto& damper : scene.dampers) {
-    out.open_object(JsonWriter::Layout::one_line);
+  out.objects("dampers", layout, scene.dampers, [&](const auto& damper) {
     for (const auto& each : damper_fields)
       if (each.number.of_damper) write(each.name, damper.*each.number.of_damper);
-    out.close();
-  }
-  out.close();
+  });
 }
 
 }  // namespace
