@@ -719,6 +719,8 @@ Json rule_of(const NumberRange& range, const Whole&) {
   return {{"type", "integer"}, {"minimum", range.least}, {"maximum", most}};
 }
 
+constexpr RunShape every_column{.listed = 1, .has_components = true};
+
 // The schema of a section or a part of one, without descriptions, and its additions for runs with a list of
 // dampers and for those without.
 struct Schema {
@@ -730,10 +732,10 @@ Schema schema_of(const Json& type) {
   Schema schema;
   Json properties, required = Json::array(), of_list = Json::array();
   const Owner owner{};
-  for_each_column(owner, true, [&](const RunColumnInfo& info, const auto& value) {
+  for_each_column(owner, every_column, [&](const RunColumnInfo& info, const auto& value) {
     using Value = std::remove_cvref_t<decltype(value)>;
     const std::string name(info.name);
-    (info.without_list == WithoutList::same ? required : of_list).push_back(name);
+    if (!info.of_components) (info.without_list == WithoutList::same ? required : of_list).push_back(name);
     if constexpr (HasRunColumns<Value>) {
       properties[name] = schema_of<Value>("object").whole;
     } else if constexpr (PartsOfDampers<Value>) {
@@ -776,7 +778,7 @@ void units_are_named(const Json& schema, const std::string& above) {
                                               : "K epsilon\\^2";
   };
   const Owner owner{};
-  for_each_column(owner, true, [&](const RunColumnInfo& info, const auto& value) {
+  for_each_column(owner, every_column, [&](const RunColumnInfo& info, const auto& value) {
     using Value = std::remove_cvref_t<decltype(value)>;
     const Json& its = schema.at("properties").at(std::string(info.name));
     const std::string text = above + its.at("description").get<std::string>();
@@ -795,8 +797,10 @@ template <class Section>
 std::string type_of() {
   std::string columns, numbers;
   const Section section{};
-  for_each_column(section, true, [&](const RunColumnInfo& info, const auto& value) {
-    if (info.without_list != WithoutList::same || HasRunColumns<std::remove_cvref_t<decltype(value)>>) return;
+  for_each_column(section, every_column, [&](const RunColumnInfo& info, const auto& value) {
+    if (info.of_components || info.without_list != WithoutList::same ||
+        HasRunColumns<std::remove_cvref_t<decltype(value)>>)
+      return;
     std::string& words = std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>> ? numbers : columns;
     words.append(words.empty() ? "\"" : " | \"").append(info.name) += '"';
   });
@@ -808,9 +812,10 @@ std::string type_of() {
 template <class Visit>
 void for_each_section(const Visit& visit) {
   const Run run{};
-  for_each_column(run, true, [&]<class Section>(const RunColumnInfo& info, const std::optional<Section>&) {
-    visit(std::string(info.name), Section{});
-  });
+  for_each_column(run, every_column,
+                  [&]<class Section>(const RunColumnInfo& info, const std::optional<Section>&) {
+                    visit(std::string(info.name), Section{});
+                  });
 }
 
 }  // namespace

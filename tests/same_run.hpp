@@ -48,7 +48,7 @@ using Columns = std::map<std::string, std::vector<double>>;
 
 template <class Owner>
 void add_columns(Columns& all, const std::string& above, const Owner& owner) {
-  for_each_column(owner, false, [&](const RunColumnInfo& info, const auto& value) {
+  for_each_column(owner, RunShape{}, [&](const RunColumnInfo& info, const auto& value) {
     using Value = std::remove_cvref_t<decltype(value)>;
     const std::string name = above + std::string(info.name);
     if constexpr (HasRunColumns<Value>) {
@@ -69,7 +69,7 @@ void add_columns(Columns& all, const std::string& above, const Owner& owner) {
 
 inline Columns columns_of(const Run& run) {
   Columns all;
-  for_each_column(run, false, [&](const RunColumnInfo& info, const auto& section) {
+  for_each_column(run, RunShape{}, [&](const RunColumnInfo& info, const auto& section) {
     if (section) add_columns(all, std::string(info.name) + '.', *section);
   });
   return all;

@@ -65,7 +65,7 @@ class Columns {
  private:
   template <HasRunColumns Owner>
   void add(const std::string& above, const Owner& owner) {
-    for_each_column(owner, has_list(all_.run), [&](const RunColumnInfo& info, const auto& value) {
+    for_each_column(owner, shape_of(all_.run.scene), [&](const RunColumnInfo& info, const auto& value) {
       add((above.empty() ? "" : above + '/').append(info.name), value);
     });
   }

@@ -14,7 +14,8 @@ namespace {
 constexpr double largest_number = 1e12;
 
 using enum Dimension;
-constexpr std::array<SceneField, 11> all_fields{{
+constexpr bool component = true;
+constexpr std::array<SceneField, 15> all_fields{{
     {"mass_ratio", &SceneDamper::mass_ratio, 1e-9, 1e6, ratio, "secondary to primary mass, nu"},
     {"restitution", &SceneDamper::restitution, 0.0, 1.0, ratio, "coefficient of restitution, e"},
     {"clearance", &SceneDamper::clearance, 1e-6, 1e6, length, "free travel of the secondary mass"},
@@ -31,6 +32,14 @@ constexpr std::array<SceneField, 11> all_fields{{
     {"force_amplitude", &Scene::force_amplitude, -largest_number, largest_number, force,
      "forcing amplitude f0, 0 for none"},
     {"force_frequency", &Scene::force_frequency, 1e-12, 1e6, frequency, "forcing frequency omega_f"},
+    {"friction", &SceneDamper::friction, 0.0, largest_number, ratio,
+     "friction of the secondary mass in the cavity by its inertia, phi", component},
+    {"static_friction", &SceneDamper::static_friction, 0.0, largest_number, ratio,
+     "the same where it does not slide, phi_s; 0 for phi", component},
+    {"weight", &Scene::weight, 0.0, largest_number, ratio,
+     "weight of the secondary mass towards the left wall by its inertia, gamma", component},
+    {"drag", &SceneDamper::drag, 0.0, largest_number, ratio,
+     "drag of a fluid on the secondary mass in the cavity, d", component},
 }};
 
 constexpr bool is_clearance(const SceneField& field) { return field.number.is(&SceneDamper::clearance); }
@@ -45,9 +54,9 @@ constexpr std::array<SceneField, size> those(bool (*are_wanted)(const SceneField
 
 }  // namespace
 
-constexpr std::array<SceneField, 10> scene_fields =
-    those<10>([](const SceneField& field) { return !is_clearance(field); });
-constexpr std::array<SceneField, 6> scene_damper_fields = those<6>(is_of_damper);
+constexpr std::array<SceneField, 14> scene_fields =
+    those<14>([](const SceneField& field) { return !is_clearance(field); });
+constexpr std::array<SceneField, 9> scene_damper_fields = those<9>(is_of_damper);
 
 bool has_one_damper(const Scene& scene) {
   return scene.dampers.size() == 1 && scene.dampers.front().clearance == 1;
@@ -57,6 +66,12 @@ std::size_t listed_dampers(const Scene& scene) { return has_one_damper(scene) ? 
 
 Problem problem_of_several() {
   return {"dampers", "a list is for run, sweep, report and response: give one damper without a list"};
+}
+
+bool has_components(const Scene& scene) {
+  return scene.weight != 0 || std::ranges::any_of(scene.dampers, [](const SceneDamper& each) {
+           return each.friction != 0 || each.static_friction != 0 || each.drag != 0;
+         });
 }
 
 const SceneField& field_of(const SceneNumber& number) {
@@ -94,8 +109,9 @@ double secondary_mass(const Scene& scene) {
 
 std::vector<Problem> problems_of(const Scene& scene) {
   std::vector<Problem> problems;
-  const auto check = [&](std::string_view name, double value, const NumberRange& range) {
-    const bool too_small = range.least < 0 && is_too_small(value);
+  const auto check = [&](std::string_view name, double value, const NumberRange& range,
+                         bool component = false) {
+    const bool too_small = (range.least < 0 || component) && is_too_small(value);
     if (range.allows(value) && !too_small) return;
     const std::string allowed = too_small ? "must be 0 or of a magnitude >= " + number_text(least_magnitude)
                                           : range.describe("must be");
@@ -111,10 +127,19 @@ std::vector<Problem> problems_of(const Scene& scene) {
   const bool one = has_one_damper(scene);
   for (std::size_t i = 0; !one && i < scene.dampers.size(); ++i) {
     for (const SceneField& field : scene_damper_fields)
-      check(damper_field(i, field.name), scene.dampers[i].*field.number.of_damper, {field.least, field.most});
+      check(damper_field(i, field.name), scene.dampers[i].*field.number.of_damper, {field.least, field.most},
+            field.component);
   }
   for (const SceneField& field : scene_fields)
-    if (one || field.number.own) check(field.name, field.number.in(scene), {field.least, field.most});
+    if (one || field.number.own)
+      check(field.name, field.number.in(scene), {field.least, field.most}, field.component);
+  for (std::size_t i = 0; i < scene.dampers.size(); ++i) {
+    const SceneDamper& damper = scene.dampers[i];
+    if (damper.static_friction > 0 && damper.static_friction < damper.friction)
+      problems.push_back({one ? "static_friction" : damper_field(i, "static_friction"),
+                          "must be 0 or at least the friction, " + number_text(damper.friction) + ", got " +
+                              number_text(damper.static_friction)});
+  }
   const NumberRange stops{0, largest_number, false};
   if (scene.until_time) check("until_time", *scene.until_time, stops);
   if (scene.until_amplitude) check("until_amplitude", *scene.until_amplitude, stops);

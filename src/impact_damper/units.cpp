@@ -7,6 +7,7 @@
 
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/text.hpp"
+#include "impact_damper/math/elementary.hpp"
 
 namespace impact_damper {
 namespace {
@@ -21,7 +22,7 @@ struct UnitRow {
   double (*size)(const Basis&);
 };
 using enum Dimension;
-constexpr std::array<UnitRow, 13> unit_table{{
+constexpr std::array<UnitRow, 15> unit_table{{
     {ratio, "", "", "", [](const Basis&) { return 1.0; }},
     {count, "", "", "", [](const Basis&) { return 1.0; }},
     {length, "epsilon", "mm", "_m", [](const Basis& b) { return b.length; }},
@@ -37,6 +38,9 @@ constexpr std::array<UnitRow, 13> unit_table{{
     {stiffness, "K", "N/m", "_N_per_m", [](const Basis& b) { return b.stiffness; }},
     {damping, "2 sqrt(K M)", "N s/m", "_N_s_per_m",
      [](const Basis& b) { return 2 * std::sqrt(b.stiffness * b.mass); }},
+    {acceleration, "epsilon Omega_n^2", "m/s^2", "_m_per_s2",
+     [](const Basis& b) { return b.metres / (b.time * b.time); }},
+    {inclination, "deg", "deg", "_deg", [](const Basis&) { return 1.0; }},
 }};
 const UnitRow& row_of(Dimension dimension) {
   return *std::ranges::find(unit_table, dimension, &UnitRow::dimension);
@@ -67,13 +71,32 @@ SceneNumber number_named(std::string_view name) {
   return its->number;
 }
 
+// Sets the components. Gravity acts along the cavities with the sine of their inclination, and across them
+// with its cosine.
+void set_components(Scene& made, const SceneInUnits& scene, const Scales& scales) {
+  const double gravity = scene.gravity.value_or(standard_gravity) / scales.of(acceleration);
+  const double along = scene.inclination.value_or(0), steep = 90 - along;  // 0 and 90 exactly
+  const auto radians = [](double degrees) { return degrees * (std::numbers::pi / 180); };
+  const bool is_flat = along <= 45;
+  const SinCos<double> smaller = sin_cos(radians(is_flat ? along : steep));
+  made.weight = gravity * (is_flat ? smaller.sin : smaller.cos);
+  const double across = gravity * (is_flat ? smaller.cos : smaller.sin);
+  for (std::size_t i = 0; i < made.dampers.size(); ++i) {
+    const DamperInUnits& given = scene.dampers[i];
+    SceneDamper& damper = made.dampers[i];
+    damper.friction = given.friction_coefficient.value_or(0) * across;
+    damper.static_friction = given.static_friction_coefficient.value_or(0) * across;
+    damper.drag = 2 * (given.drag.value_or(0) / scales.of(damping)) / damper.mass_ratio;
+  }
+}
+
 bool is_needed(std::string_view name) {
   return name == "mass" || name == "stiffness" || name == "secondary_mass" || name == "clearance";
 }
 
 }  // namespace
 
-constexpr std::array<UnitField, 16> unit_fields{{
+constexpr std::array<UnitField, 21> unit_fields{{
     {"mass", &SceneInUnits::mass, some, mass, "", "mass M of the primary system"},
     {"stiffness", &SceneInUnits::stiffness, some, stiffness, "", "stiffness K of its spring"},
     {"secondary_mass", &DamperInUnits::secondary_mass, some, mass, "mass_ratio", "secondary mass"},
@@ -99,6 +122,15 @@ constexpr std::array<UnitField, 16> unit_fields{{
      "amplitude of the exciting force"},
     {"exciting_frequency", &SceneInUnits::exciting_frequency, positive, frequency, "force_frequency",
      "frequency of the exciting force"},
+    {"friction_coefficient", &DamperInUnits::friction_coefficient, within(0, 1e6), ratio, "friction",
+     "coefficient of friction of the secondary mass in the cavity, mu"},
+    {"static_friction_coefficient", &DamperInUnits::static_friction_coefficient, within(0, 1e6), ratio,
+     "static_friction", "the same where it does not slide"},
+    {"inclination", &SceneInUnits::inclination, within(0, 90), inclination, "weight",
+     "inclination of the cavity from the horizontal, its left wall below"},
+    {"gravity", &SceneInUnits::gravity, not_negative, acceleration, "", "acceleration of gravity"},
+    {"drag", &DamperInUnits::drag, within(0, 1e12), damping, "drag",
+     "drag of a fluid on the secondary mass in the cavity"},
     {"until_seconds", &SceneInUnits::until_seconds, positive, time, "until_time",
      "the run ends at this time"},
     {"until_millimetres", &SceneInUnits::until_millimetres, positive, length, "until_amplitude",
@@ -168,15 +200,17 @@ Scene dimensionless(const SceneInUnits& scene) {
     for (std::size_t i = 0; i < (field.number.of_damper ? made.dampers.size() : 1); ++i) {
       const auto& given = NumberInUnits{field.number, i}.in(scene);
       if (!given) continue;
+      if (field.becomes.empty()) continue;
       const double number = *given / scales.of(field.dimension);
       if (field.becomes == "until_time")
         made.until_time = number;
       else if (field.becomes == "until_amplitude")
         made.until_amplitude = number;
-      else if (!field.becomes.empty())
-        SceneNumber{number_named(field.becomes), i}.in(made) = number;
+      else if (const SceneNumber its = number_named(field.becomes); !field_of(its).component)
+        SceneNumber{its, i}.in(made) = number;
     }
   }
+  set_components(made, scene, scales);
   return made;
 }
 

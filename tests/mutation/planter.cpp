@@ -95,15 +95,15 @@ void each_damper(std::vector<Value>& dampers, Visit all, Entries entries) {
 // What the table of columns has of `owner`, `above` before each name, but for sums, which a run does not
 // keep.
 template <class Owner, class Visit>
-void each_column(Owner& owner, const std::string& above, bool of_list, const Visit& all) {
-  for_each_column(owner, of_list, [&](const RunColumnInfo& info, auto&& value) {
+void each_column(Owner& owner, const std::string& above, const RunShape& shape, const Visit& all) {
+  for_each_column(owner, shape, [&](const RunColumnInfo& info, auto&& value) {
     using Value = std::remove_reference_t<decltype(value)>;
     const std::string name = above + std::string(info.name);
     if constexpr (HasRunColumns<Value>) {
-      each_column(value, name + '.', of_list, all);
+      each_column(value, name + '.', shape, all);
     } else if constexpr (PartsOfDampers<Value>) {
       all(name, value);
-      if (!value.empty()) each_column(value.front(), name + ".1.", of_list, all);
+      if (!value.empty()) each_column(value.front(), name + ".1.", shape, all);
     } else if constexpr (std::is_lvalue_reference_v<decltype(value)>) {
       all(name, value);
     }
@@ -124,16 +124,19 @@ void each_entry(Run& run, Visit all) {
   const auto scene = under("scene"), engine = under("engine");
   const bool one = has_one_damper(run.scene);
   for (const SceneField& field : scene_fields)
-    if (one || field.number.own) scene(field.name, field.number.in(run.scene));
+    if ((one || field.number.own) && !field.is_absent(field.number.in(run.scene)))
+      scene(field.name, field.number.in(run.scene));
   if (!one)
     each_damper(run.scene.dampers, scene, [](SceneDamper& damper, auto visit) {
-      for (const SceneField& field : scene_damper_fields) visit(field.name, damper.*field.number.of_damper);
+      for (const SceneField& field : scene_damper_fields)
+        if (!field.is_absent(damper.*field.number.of_damper))
+          visit(field.name, damper.*field.number.of_damper);
     });
   scene("until_time", run.scene.until_time);
   scene("until_amplitude", run.scene.until_amplitude);
   for_each_option(run.engine, [&](const OptionInfo& option, auto& value) { engine(option.name, value); });
-  for_each_column(run, has_list(run), [&](const RunColumnInfo& info, auto& section) {
-    if (section) each_column(*section, std::string(info.name) + '.', has_list(run), all);
+  for_each_column(run, shape_of(run.scene), [&](const RunColumnInfo& info, auto& section) {
+    if (section) each_column(*section, std::string(info.name) + '.', shape_of(run.scene), all);
   });
 }
 

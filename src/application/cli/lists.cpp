@@ -26,24 +26,36 @@ std::vector<fs::path> scene_files(const fs::path& folder) {
 int list_scenes(Arguments& arguments) {
   const std::string folder = arguments.file("FOLDER").value_or(project_file("data/scenes"));
   arguments.finish();
-  Rows rows(1, {"scene"});
-  for (const SceneField& field : scene_fields) rows[0].emplace_back(field.name);
-  rows[0].insert(rows[0].end(), {"until_time", "until_amplitude"});
+  std::vector<std::pair<std::string, Scene>> scenes;
   std::vector<std::string> problems;
   for (const fs::path& file : scene_files(folder)) {
     try {
-      const Scene scene = read_scene(file);
-      auto& row = rows.emplace_back(1, file.stem().string());
-      for (const SceneField& field : scene_fields)
-        row.push_back(field.number.of_damper && !has_one_damper(scene) ? "-"
-                                                                       : number_text(field.number.in(scene)));
-      for (const auto& stop : {scene.until_time, scene.until_amplitude})
-        row.push_back(stop ? number_text(*stop) : "-");
+      scenes.emplace_back(file.stem().string(), read_scene(file));
     } catch (const InputError& error) {
       problems.insert(problems.end(), error.problems().begin(), error.problems().end());
     }
   }
   if (!problems.empty()) throw InputError(problems);
+
+  Rows rows(1, {"scene"});
+  for (const auto& each : scenes) rows.emplace_back(1, each.first);
+  for (const SceneField& field : scene_fields) {
+    const auto text_of = [&](const Scene& scene) {
+      return field.number.of_damper && !has_one_damper(scene) ? "-" : number_text(field.number.in(scene));
+    };
+    const auto is_absent = [&](const auto& each) { return field.is_absent(field.number.in(each.second)); };
+    if (!scenes.empty() && std::ranges::all_of(scenes, is_absent)) continue;
+    rows[0].emplace_back(field.name);
+    for (std::size_t i = 0; i < scenes.size(); ++i) rows[i + 1].push_back(text_of(scenes[i].second));
+  }
+  for (const auto& [name, stop] :
+       {std::pair("until_time", &Scene::until_time), {"until_amplitude", &Scene::until_amplitude}}) {
+    rows[0].emplace_back(name);
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+      const std::optional<double>& its = scenes[i].second.*stop;
+      rows[i + 1].push_back(its ? number_text(*its) : "-");
+    }
+  }
   write_standard_output(aligned(rows));
   return 0;
 }

@@ -155,7 +155,8 @@ Variables variables_of(const Scene& scene, const std::optional<Scales>& scales) 
     const std::string_view its = field_of(number).name;
     variables[name] = {number, within(least, most)};
     for (const UnitField& field : unit_fields)
-      if (scales && field.becomes == its && field.dimension != Dimension::ratio)
+      if (scales && field.becomes == its && field.dimension != Dimension::ratio &&
+          !field_of(number).component)
         variables[std::string(field.name) + name.substr(its.size())] = {number, within(least, most),
                                                                         scales->of(field.dimension)};
   }

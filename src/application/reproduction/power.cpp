@@ -84,6 +84,7 @@ std::vector<PowerNumber> numbers_of(const std::string& of, const Scene& scene) {
   };
   for (const NamedSceneNumber& each : numbers_of(scene)) {
     if (each.name == "force_frequency" && scene.force_amplitude == 0) continue;  // without a force
+    if (field_of(each.number).is_absent(each.number.in(scene))) continue;
     add(each.name, each.number.in(scene),
         [number = each.number](PowerState& state, double value) { number.in(state.scene) = value; });
   }

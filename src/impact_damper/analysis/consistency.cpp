@@ -68,13 +68,20 @@ class Examination {
   std::string of_damper(const std::string& section, std::size_t damper) const {
     return several_ ? section + "dampers/" + std::to_string(damper) + '/' : section;
   }
-  // An upper bound of |x| and |x'| in a run that only the force puts energy into: d/dt sqrt(2 E) <= f0.
+  // An upper bound of |x| and |x'| in a run that only the force puts energy into: d/dt sqrt(2 E) <= f0. E is
+  // counted from its least value, which the weight of the masses puts below that at x = y = 0.
   double fastest() const {
     double twice_energy = scene_.x0 * scene_.x0 + scene_.v0 * scene_.v0;
     for (const SceneDamper& damper : scene_.dampers)
       twice_energy += damper.mass_ratio * (scene_.v0 + damper.w0) * (scene_.v0 + damper.w0);
+    const double weight = scene_.weight * secondary_mass(scene_);
+    twice_energy += weight * (2 * std::abs(scene_.x0) + weight);
+    for (const SceneDamper& damper : scene_.dampers) {
+      const double its = scene_.weight * damper.mass_ratio;
+      twice_energy += its * (2 * std::abs(damper.y0) + its / damper.wall_stiffness);
+    }
     twice_energy += 2 * energy_in_walls();
-    return std::sqrt(twice_energy) + std::abs(scene_.force_amplitude) * run_.end_time;
+    return std::sqrt(twice_energy) + weight + std::abs(scene_.force_amplitude) * run_.end_time;
   }
 
   double energy_in_walls() const {  // at the release
@@ -95,7 +102,7 @@ class Examination {
   double blur(double time, double scale) const {
     double curvature = 1;
     for (const SceneDamper& damper : scene_.dampers)
-      curvature += damper.wall_stiffness * damper.mass_ratio * step_;
+      curvature += damper.mass_ratio * (damper.wall_stiffness * step_ + damper.friction + scene_.weight);
     return rounding * (1 + time) * scale + step_ * step_ * curvature * (1 + scale);
   }
 
@@ -439,18 +446,19 @@ class Examination {
   }
 
   void examine_energy(const EnergyBalance& balance) {
-    std::vector<double> w;
-    for (const SceneDamper& damper : scene_.dampers) w.push_back(damper.w0);
-    examine_energy_at("/energy/initial/", balance.initial, scene_.x0, scene_.v0, w, energy_in_walls(),
+    std::vector<double> y, w;
+    for (const SceneDamper& damper : scene_.dampers) y.push_back(damper.y0), w.push_back(damper.w0);
+    examine_energy_at("/energy/initial/", balance.initial, scene_.x0, scene_.v0, y, w, energy_in_walls(),
                       rounding);
     examine_kinetic("initial_kinetic", &DamperEnergy::initial_kinetic, scene_.v0, w, rounding);
     if (run_.history && !run_.history->time.empty() && run_.history->time.back() == run_.end_time) {
       const History& history = *run_.history;
       // Near resonance or in an overdamped motion the final state carries rounding errors of larger numbers
       // before it; velocities of central differences are of second order.
-      for (std::size_t i = 0; i < w.size(); ++i) w[i] = history.dampers[i].w.back();
+      for (std::size_t i = 0; i < w.size(); ++i)
+        y[i] = history.dampers[i].y.back(), w[i] = history.dampers[i].w.back();
       const double part = 1e-9 + step_ * step_;
-      examine_energy_at("/energy/final/", balance.final, history.x.back(), history.v.back(), w,
+      examine_energy_at("/energy/final/", balance.final, history.x.back(), history.v.back(), y, w,
                         balance.final.wall, part);
       examine_kinetic("final_kinetic", &DamperEnergy::final_kinetic, history.v.back(), w, part);
     }
@@ -467,27 +475,39 @@ class Examination {
       equal("/energy/viscous_work", 0, balance.viscous_work, 0, ": there is no damper");
     require(balance.viscous_work >= (cem_ ? -step_ * balance.initial.total() : 0.0), "/energy/viscous_work",
             got(">= 0", balance.viscous_work));
+    const auto has = [&](double SceneDamper::*number) {
+      return std::ranges::any_of(scene_.dampers, [&](const SceneDamper& its) { return its.*number != 0; });
+    };
+    if (!has(&SceneDamper::friction))
+      equal("/energy/friction_loss", 0, balance.friction_loss, 0, ": no mass slides with friction");
+    if (!has(&SceneDamper::drag)) equal("/energy/drag_loss", 0, balance.drag_loss, 0, ": there is no drag");
+    require(balance.friction_loss >= 0, "/energy/friction_loss", got(">= 0", balance.friction_loss));
+    require(balance.drag_loss >= 0, "/energy/drag_loss", got(">= 0", balance.drag_loss));
     if (scene_.force_amplitude == 0)
       equal("/energy/forcing_work", 0, balance.forcing_work, 0, ": there is no force");
     examine_residual(balance);
   }
 
-  // Compares the energies at one instant with those of the state; w: of all dampers; part: relative
+  // Compares the energies at one instant with those of the state; y, w: of all dampers; part: relative
   // tolerance.
   void examine_energy_at(const std::string& section, const Energy& energy, double x, double v,
-                         const std::vector<double>& w, double wall, double part) {
-    double moving = v * v, kinetic = moving, paper = moving;
+                         const std::vector<double>& y, const std::vector<double>& w, double wall,
+                         double part) {
+    double moving = v * v, kinetic = moving, paper = moving, weight = 0, lifted = 0;
     for (std::size_t i = 0; i < w.size(); ++i) {
       const double nu = scene_.dampers[i].mass_ratio, most = std::abs(v) + std::abs(w[i]), z1 = v + w[i];
       moving += nu * most * most;
       kinetic += nu * z1 * z1;
       paper += nu * (v * v + w[i] * w[i]);
+      weight += scene_.weight * nu * (x + y[i]);
+      lifted += scene_.weight * nu * (std::abs(x) + std::abs(y[i]));
     }
-    const double tolerance = part * (moving / 2 + x * x / 2 + wall);
+    const double tolerance = part * (moving / 2 + x * x / 2 + wall + lifted);
     const std::string of = ", that of the state";
     equal(section + "kinetic", kinetic / 2, energy.kinetic, tolerance, of);
     equal(section + "spring", x * x / 2, energy.spring, tolerance, of);
     equal(section + "wall", wall, energy.wall, tolerance, of);
+    equal(section + "weight", weight, energy.weight, tolerance, of);
     equal(section + "paper", (paper + x * x) / 2, energy.paper, tolerance, of);
   }
 
@@ -538,13 +558,15 @@ class Examination {
       if (run_.impacts) losses[run_.impacts->damper[i]] += balance.impact_loss[i];
     }
     const double rounded = rounding * (1 + static_cast<double>(balance.impact_loss.size()) / 64);
-    double impact_loss = 0, contact_loss = 0, bounce_down_loss = 0;
+    double impact_loss = 0, contact_loss = 0, bounce_down_loss = 0, friction_loss = 0, drag_loss = 0;
     std::int64_t bounce_downs = 0;
     for (std::size_t i = 0; i < dampers.size(); ++i) {
       const std::string section = of_damper("/energy/", i);
       impact_loss += dampers[i].impact_loss;
       contact_loss += dampers[i].contact_loss;
       bounce_down_loss += dampers[i].bounce_down_loss;
+      friction_loss += dampers[i].friction_loss;
+      drag_loss += dampers[i].drag_loss;
       bounce_downs += dampers[i].bounce_downs;
       if (run_.impacts && !equal(section + "impact_loss", losses[i], dampers[i].impact_loss,
                                  rounded * std::abs(losses[i]), ", the sum over its impacts"))
@@ -559,6 +581,8 @@ class Examination {
     equal("/energy/contact_loss", contact_loss, balance.contact_loss, rounding * std::abs(contact_loss), of);
     equal("/energy/bounce_down_loss", bounce_down_loss, balance.bounce_down_loss,
           rounding * (1 + static_cast<double>(bounce_downs) / 64) * bounce_down_loss, of);
+    equal("/energy/friction_loss", friction_loss, balance.friction_loss, rounding * friction_loss, of);
+    equal("/energy/drag_loss", drag_loss, balance.drag_loss, rounding * drag_loss, of);
     require(bounce_downs == balance.bounce_downs, "/energy/bounce_downs",
             got(std::to_string(bounce_downs) + of, balance.bounce_downs));
   }
@@ -570,8 +594,8 @@ class Examination {
   void examine_residual(const EnergyBalance& balance) {
     const std::vector<double>& losses = balance.impact_loss;
     const double begin = balance.initial.total(), end = balance.final.total(), put_in = balance.forcing_work;
-    const double lost =
-        balance.impact_loss_total() + balance.contact_loss + balance.bounce_down_loss + balance.viscous_work;
+    const double lost = balance.impact_loss_total() + balance.contact_loss + balance.bounce_down_loss +
+                        balance.viscous_work + balance.friction_loss + balance.drag_loss;
     const double open = (begin + put_in) - (end + lost);
     const double push = std::abs(scene_.force_amplitude) * run_.end_time / std::sqrt(2.0);
     const double root = push + std::sqrt(push * push + begin);
@@ -580,7 +604,8 @@ class Examination {
     const double bound = scene_.force_amplitude == 0 ? begin : root * root;
     const double most = cem_ ? 2 * std::max(bound, least) : bound;
     double handled = begin + std::abs(put_in) + end + std::abs(balance.contact_loss) +
-                     std::abs(balance.bounce_down_loss) + std::abs(balance.viscous_work);
+                     std::abs(balance.bounce_down_loss) + std::abs(balance.viscous_work) +
+                     std::abs(balance.friction_loss) + std::abs(balance.drag_loss);
     for (const double loss : losses) handled += std::abs(loss);
     const double rounded = (1 + static_cast<double>(losses.size()) / 64) * rounding * handled;
     const double size = std::abs(balance.residual);

@@ -34,7 +34,7 @@ std::string bare(std::string_view word) {
 
 // The symbols of docs/mathematics.md and their names at the interface, first the dimensionless ones, then
 // those with units.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 23> symbols{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 26> symbols{
     {{"nu", "mass_ratio"},
      {"e", "restitution"},
      {"zeta", "damping_ratio"},
@@ -55,6 +55,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 23> symbols{
      {"m", "secondary_mass"},
      {"K", "stiffness"},
      {"C", "damping"},
+     {"phi", "friction"},
+     {"mu", "friction_coefficient"},
+     {"gamma", "weight"},
      {"epsilon", "clearance"},
      {"gap", "clearance"},
      {"h", "time_step"}}};

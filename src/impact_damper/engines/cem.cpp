@@ -111,7 +111,9 @@ std::vector<Problem> problems_of(const Scene& scene, const Cem& options) {
              rounded(fastest_contact_frequency(scene)) + ", " + std::string(name_of(options.damper)) +
              " damper); take a smaller step, or run it all the same with --unstable"});
   }
-  if (options.large_step) {
+  if (options.large_step && has_components(scene)) {
+    problems.push_back({"large_step", "must be absent beside friction, weight and drag"});
+  } else if (options.large_step) {
     const double large = *options.large_step;
     const double half_period = scene.force_amplitude != 0 ? std::numbers::pi / scene.force_frequency : 2;
     if (!(large > h && large < 2)) {

@@ -93,6 +93,14 @@ std::vector<Problem> incompatibilities_of(const Scene& scene, const Engine& engi
                                                    number_text(damper.y0)});
   }
   const Cem* const cem = std::get_if<Cem>(&engine);
+  for (const SceneField& field : scene_fields) {
+    if (!field.component || cem) continue;
+    for (std::size_t i = 0; i < (field.number.of_damper ? scene.dampers.size() : 1); ++i)
+      if (const double value = SceneNumber{field.number, i}.in(scene); value != 0)
+        problems.push_back({one || field.number.own ? std::string(field.name) : damper_field(i, field.name),
+                            "must be 0 with the " + std::string(name_of(engine)) + " engine, got " +
+                                number_text(value) + ": --engine cem has friction, weight and drag"});
+  }
   if (cem && cem->time_step) problems = problems_of(scene, *cem);
   if (one && has_rigid_walls(engine) && !within(0, 1).allows(scene.damper().y0)) {
     problems.push_back({"y0", within(0, 1).describe("must be") + " with the " + std::string(name_of(engine)) +

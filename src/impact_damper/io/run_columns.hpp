@@ -34,6 +34,7 @@ struct RunColumnInfo {
   NumberRange range{};
   Order order = Order::any;
   WithoutList without_list = WithoutList::same;
+  bool of_components = false;  // only of a scene with friction, drag or weight (has_components)
 };
 
 template <class Owner, class Value>
@@ -55,6 +56,9 @@ constexpr RunColumnInfo length(std::string_view name, NumberRange range = {}) {
 }
 constexpr RunColumnInfo velocity(std::string_view name) { return {name, Dimension::velocity}; }
 constexpr RunColumnInfo energy(std::string_view name) { return {name, Dimension::energy}; }
+constexpr RunColumnInfo component(std::string_view name) {
+  return {.name = name, .dimension = Dimension::energy, .of_components = true};
+}
 constexpr RunColumnInfo count(std::string_view name) { return {.name = name, .range = at_least(0)}; }
 inline constexpr RunColumnInfo wall{.name = "wall", .range = within(0, 1)};
 inline constexpr RunColumnInfo damper{
@@ -98,10 +102,13 @@ inline constexpr auto run_columns<Contacts> =
                RunColumn{&Contacts::wall, detail::wall}, RunColumn{&Contacts::damper, detail::damper}};
 
 template <>
-inline constexpr auto run_columns<Energy> = std::tuple{
-    RunColumn{&Energy::kinetic, detail::energy("kinetic")},
-    RunColumn{&Energy::spring, detail::energy("spring")}, RunColumn{&Energy::wall, detail::energy("wall")},
-    RunColumn{&Energy::total, detail::energy("total")}, RunColumn{&Energy::paper, detail::energy("paper")}};
+inline constexpr auto run_columns<Energy> =
+    std::tuple{RunColumn{&Energy::kinetic, detail::energy("kinetic")},
+               RunColumn{&Energy::spring, detail::energy("spring")},
+               RunColumn{&Energy::wall, detail::energy("wall")},
+               RunColumn{&Energy::weight, detail::component("weight")},
+               RunColumn{&Energy::total, detail::energy("total")},
+               RunColumn{&Energy::paper, detail::energy("paper")}};
 
 template <>
 inline constexpr auto run_columns<DamperEnergy> =
@@ -110,7 +117,9 @@ inline constexpr auto run_columns<DamperEnergy> =
                RunColumn{&DamperEnergy::impact_loss, detail::energy("impact_loss")},
                RunColumn{&DamperEnergy::contact_loss, detail::energy("contact_loss")},
                RunColumn{&DamperEnergy::bounce_down_loss, detail::energy("bounce_down_loss")},
-               RunColumn{&DamperEnergy::bounce_downs, detail::count("bounce_downs")}};
+               RunColumn{&DamperEnergy::bounce_downs, detail::count("bounce_downs")},
+               RunColumn{&DamperEnergy::friction_loss, detail::component("friction_loss")},
+               RunColumn{&DamperEnergy::drag_loss, detail::component("drag_loss")}};
 
 template <>
 inline constexpr auto run_columns<EnergyBalance> =
@@ -123,6 +132,8 @@ inline constexpr auto run_columns<EnergyBalance> =
                RunColumn{&EnergyBalance::bounce_down_loss, detail::energy("bounce_down_loss")},
                RunColumn{&EnergyBalance::viscous_work, detail::energy("viscous_work")},
                RunColumn{&EnergyBalance::forcing_work, detail::energy("forcing_work")},
+               RunColumn{&EnergyBalance::friction_loss, detail::component("friction_loss")},
+               RunColumn{&EnergyBalance::drag_loss, detail::component("drag_loss")},
                RunColumn{&EnergyBalance::residual, {.name = "residual"}},
                RunColumn{&EnergyBalance::dampers, detail::dampers(WithoutList::absent)}};
 
@@ -150,19 +161,25 @@ template <class Type>
 concept PartsOfDampers =
     HasRunColumns<typename Type::value_type> && std::same_as<Type, std::vector<typename Type::value_type>>;
 
-// Whether the run's scene lists its dampers, so that its sections have columns for each.
-inline bool has_list(const Run& run) { return !has_one_damper(run.scene); }
+// What decides which columns a run has: the length of its scene's list of dampers, 0 without one, and whether
+// the scene has components.
+struct RunShape {
+  std::size_t listed = 0;
+  bool has_components = false;
+};
+inline RunShape shape_of(const Scene& scene) { return {listed_dampers(scene), has_components(scene)}; }
 
-// Calls visit(info, value) for each column that `owner` has in a run with a list of dampers (of_list), or
-// without; a sum is passed as a temporary.
+// Calls visit(info, value) for each column that `owner` has in a run of that shape; a sum is passed as a
+// temporary.
 template <class Owner, class Visit>
-void for_each_column(Owner& owner, bool of_list, Visit&& visit) {
+void for_each_column(Owner& owner, const RunShape& shape, Visit&& visit) {
   const auto visit_one = [&](const auto& column) {
-    if (of_list || column.info.without_list == WithoutList::same) {
+    if (column.info.of_components && !shape.has_components) return;
+    if (shape.listed > 0 || column.info.without_list == WithoutList::same) {
       visit(column.info, std::invoke(column.member, owner));
     } else if constexpr (PartsOfDampers<typename std::remove_cvref_t<decltype(column)>::value_type>) {
       if (column.info.without_list == WithoutList::in_section)
-        for (auto& damper : owner.*column.member) for_each_column(damper, of_list, visit);
+        for (auto& damper : owner.*column.member) for_each_column(damper, shape, visit);
     }
   };
   std::apply([&](const auto&... columns) { (visit_one(columns), ...); },

@@ -22,13 +22,13 @@ namespace {
 // whether the value is valid; the problems have been reported.
 class SectionReader {
  public:
-  // dampers: the length of the scene's list, 0 without one. length: of the columns, if it is known.
-  SectionReader(ObjectReader object, std::size_t dampers, std::optional<std::size_t> length = {})
-      : object_(std::move(object)), dampers_(dampers), length_(length) {}
+  // length: of the columns, if it is known.
+  SectionReader(ObjectReader object, const RunShape& shape, std::optional<std::size_t> length = {})
+      : object_(std::move(object)), shape_(shape), length_(length) {}
 
   template <class Section>
   void read(Section& section) {
-    for_each_column(section, dampers_ > 0, [&](const RunColumnInfo& info, auto&& value) {
+    for_each_column(section, shape_, [&](const RunColumnInfo& info, auto&& value) {
       if (!read_value(info, std::forward<decltype(value)>(value))) invalid_.push_back(info.name);
     });
   }
@@ -62,18 +62,17 @@ class SectionReader {
   }
   template <HasRunColumns Part>
   bool read_value(const RunColumnInfo& info, Part& part) {
-    SectionReader(object_.required_object(info.name), dampers_).read(part);
+    SectionReader(object_.required_object(info.name), shape_).read(part);
     return true;
   }
   template <HasRunColumns Part>
   bool read_value(const RunColumnInfo& info, std::vector<Part>& parts) {
     std::vector<ObjectReader> objects = object_.required_objects(info.name, most_dampers);
-    if (object_.has(info.name) && objects.size() != dampers_)
-      object_.reject(info.name, "must be as many as in the scene, " + std::to_string(dampers_) + ", got " +
-                                    std::to_string(objects.size()));
+    if (object_.has(info.name) && objects.size() != shape_.listed)
+      object_.reject(info.name, "must be as many as in the scene, " + std::to_string(shape_.listed) +
+                                    ", got " + std::to_string(objects.size()));
     parts.resize(objects.size());
-    for (std::size_t i = 0; i < parts.size(); ++i)
-      SectionReader(objects[i], dampers_, length_).read(parts[i]);
+    for (std::size_t i = 0; i < parts.size(); ++i) SectionReader(objects[i], shape_, length_).read(parts[i]);
     return true;
   }
   template <class Element>
@@ -86,8 +85,8 @@ class SectionReader {
       return false;
     }
     if constexpr (std::same_as<Element, double>) {
-      const bool ascends =
-          info.order == Order::ascending || (info.order == Order::ascending_for_each_damper && dampers_ == 0);
+      const bool ascends = info.order == Order::ascending ||
+                           (info.order == Order::ascending_for_each_damper && shape_.listed == 0);
       if (!ascends) return true;
       const auto drop = std::is_sorted_until(column.begin(), column.end());
       if (drop == column.end()) return true;
@@ -101,7 +100,7 @@ class SectionReader {
   template <NumberedInFiles Element>
   bool read_value(const RunColumnInfo& info, std::vector<Element>& column) {
     RunColumnInfo of_scene = info;
-    if (std::same_as<Element, std::int32_t>) of_scene.range.most = static_cast<double>(dampers_);
+    if (std::same_as<Element, std::int32_t>) of_scene.range.most = static_cast<double>(shape_.listed);
     std::vector<std::int64_t> numbers;
     const bool is_valid = read_value(of_scene, numbers);
     for (const std::int64_t number : numbers)
@@ -110,7 +109,7 @@ class SectionReader {
   }
 
   ObjectReader object_;
-  std::size_t dampers_;
+  RunShape shape_;
   std::optional<std::size_t> length_;
   std::vector<std::string_view> invalid_;
 };
@@ -141,19 +140,19 @@ bool read_option(ObjectReader& object, const OptionInfo& option, Lacking lacking
 
 // Reads a section, if it is there.
 template <class Section>
-void read_section(ObjectReader& object, std::string_view name, std::size_t dampers,
+void read_section(ObjectReader& object, std::string_view name, const RunShape& shape,
                   std::optional<Section>& section) {
   const std::optional<ObjectReader> part = object.optional_object(name);
   if (!part) return;
-  SectionReader reader(*part, dampers);
+  SectionReader reader(*part, shape);
   Section& its = section.emplace();
   reader.read(its);
   if constexpr (std::same_as<Section, HalfCycles>)
-    if (dampers == 0) its.dampers = {{its.impacts}};
+    if (shape.listed == 0) its.dampers = {{its.impacts}};
   if constexpr (std::same_as<Section, Impacts>)
-    if (dampers == 0) its.damper.assign(its.time.size(), 0);
+    if (shape.listed == 0) its.damper.assign(its.time.size(), 0);
   if constexpr (std::same_as<Section, Contacts>) {
-    if (dampers == 0) its.damper.assign(its.begin.size(), 0);
+    if (shape.listed == 0) its.damper.assign(its.begin.size(), 0);
     reader.check_ends(its);
   }
 }
@@ -189,7 +188,7 @@ Run read_whole(SealedDocument file) {
     file.document.finish();
   }
   // Files of earlier versions list one damper as they list several.
-  const std::size_t dampers = scene.holds("dampers") ? run.scene.dampers.size() : 0;
+  const RunShape shape{scene.holds("dampers") ? run.scene.dampers.size() : 0, has_components(run.scene)};
   if (const std::optional<Engine> whole = read_engine(engine, Lacking::nothing)) {
     run.engine = *whole;
     check_together(scene, engine, run);
@@ -197,8 +196,8 @@ Run read_whole(SealedDocument file) {
   object.required("stop_reason", run.stop_reason);
   object.required("end_time", run.end_time, at_least(0));
   check_units(object);
-  for_each_column(run, dampers > 0, [&](const RunColumnInfo& info, auto& section) {
-    read_section(object, info.name, dampers, section);
+  for_each_column(run, shape, [&](const RunColumnInfo& info, auto& section) {
+    read_section(object, info.name, shape, section);
   });
   if (run.impacts && run.energy && run.impacts->time.size() != run.energy->impact_loss.size()) {
     object.reject("energy", "must hold a loss for each of the " + std::to_string(run.impacts->time.size()) +

@@ -18,12 +18,12 @@ using Layout = JsonWriter::Layout;
 
 // Writes all that the table of columns has of `owner`.
 template <class Owner>
-void write_columns(JsonWriter& out, const Owner& owner, bool of_list) {
+void write_columns(JsonWriter& out, const Owner& owner, const RunShape& shape) {
   const auto finish_object = [&](const auto& part) {
-    write_columns(out, part, of_list);
+    write_columns(out, part, shape);
     out.close();
   };
-  for_each_column(owner, of_list, [&](const RunColumnInfo& info, const auto& value) {
+  for_each_column(owner, shape, [&](const RunColumnInfo& info, const auto& value) {
     using Value = std::remove_cvref_t<decltype(value)>;
     if constexpr (std::same_as<Owner, Run>) {
       if (!value) return;
@@ -47,11 +47,12 @@ void write_columns(JsonWriter& out, const Owner& owner, bool of_list) {
 
 // Adds the columns of a section, or of the part of it that one damper has.
 template <class Owner>
-void add_columns(CsvTable& table, const Owner& owner, bool of_list, const std::string& after_name = {}) {
-  for_each_column(owner, of_list, [&](const RunColumnInfo& info, const auto& value) {
+void add_columns(CsvTable& table, const Owner& owner, const RunShape& shape,
+                 const std::string& after_name = {}) {
+  for_each_column(owner, shape, [&](const RunColumnInfo& info, const auto& value) {
     if constexpr (PartsOfDampers<std::remove_cvref_t<decltype(value)>>) {
       for (std::size_t i = 0; i < value.size(); ++i)
-        add_columns(table, value[i], of_list, '_' + std::to_string(i + 1));
+        add_columns(table, value[i], shape, '_' + std::to_string(i + 1));
     } else {
       table.add(std::string(info.name) + after_name, info.dimension, in_file(value));
     }
@@ -99,16 +100,16 @@ std::string run_text(const Run& run, const std::optional<Scales>& scales) {
   write_engine(out, run.engine);
   out.fields("stop_reason", run.stop_reason, "end_time", run.end_time);
   if (scales) write_units(out, *scales);
-  write_columns(out, run, has_list(run));
+  write_columns(out, run, shape_of(run.scene));
   write_provenance(out);
   return sealed(out.finish());
 }
 
 std::string run_csv(const Run& run, const std::optional<Scales>& scales) {
   CsvTable table("run", scales);
-  for_each_column(run, has_list(run), [&]<class Section>(const RunColumnInfo&, const Section& section) {
+  for_each_column(run, shape_of(run.scene), [&]<class Section>(const RunColumnInfo&, const Section& section) {
     if constexpr (!std::same_as<Section, std::optional<EnergyBalance>>)  // energies are no table
-      if (section && table.empty()) add_columns(table, *section, has_list(run));
+      if (section && table.empty()) add_columns(table, *section, shape_of(run.scene));
   });
   if (table.empty())
     throw std::invalid_argument(

@@ -21,14 +21,13 @@ GivenKeys given_keys(const ObjectReader& object) {
   const auto add = [&](std::string& list, std::string_view key) {
     if (object.holds(key)) list += (list.empty() ? "" : ", ") + std::string(key);
   };
-  const auto is_in_both = [](std::string_view name) {
-    const auto* const field = std::ranges::find(unit_fields, name, &UnitField::name);
-    return field != unit_fields.end() && field->dimension == Dimension::ratio;
+  const auto has = [](const auto& fields, std::string_view name) {
+    return std::ranges::any_of(fields, [&](const auto& each) { return each.name == name; });
   };
   for (const UnitField& field : unit_fields)
-    if (field.dimension != Dimension::ratio) add(given.in_units, field.name);
+    if (!has(scene_fields, field.name)) add(given.in_units, field.name);
   for (const SceneField& field : scene_fields)
-    if (!is_in_both(field.name)) add(given.dimensionless, field.name);
+    if (!has(unit_fields, field.name)) add(given.dimensionless, field.name);
   for (const std::string_view stop : {"until_time", "until_amplitude"}) add(given.dimensionless, stop);
   return given;
 }
@@ -87,15 +86,15 @@ void reject_run(const std::filesystem::path& file) {
 template <class AnyScene, class Fields, class DamperFields>
 void write_numbers(JsonWriter& out, const AnyScene& scene, bool one, const Fields& fields,
                    const DamperFields& damper_fields, JsonWriter::Layout layout) {
-  const auto write = [&](std::string_view name, const std::optional<double>& number) {
-    if (number) out.field(name, number);
+  const auto write = [&](const auto& field, const std::optional<double>& number) {
+    if (number && !field.is_absent(*number)) out.field(field.name, number);
   };
   for (const auto& each : fields)
-    if (one || each.number.own) write(each.name, each.number.in(scene));
+    if (one || each.number.own) write(each, each.number.in(scene));
   if (one) return;
   out.objects("dampers", layout, scene.dampers, [&](const auto& damper) {
     for (const auto& each : damper_fields)
-      if (each.number.of_damper) write(each.name, damper.*each.number.of_damper);
+      if (each.number.of_damper) write(each, damper.*each.number.of_damper);
   });
 }
 
@@ -106,7 +105,7 @@ Scene read_scene_fields(ObjectReader& object, MissingFields missing) {
   const bool all = missing == MissingFields::are_problems;
   read_numbers(object, scene, scene_fields, scene_damper_fields,
                [&](ObjectReader& from, const SceneField& field, double& target, const std::string&) {
-                 if (all) from.require(field.name);
+                 if (all && !field.component) from.require(field.name);
                  from.optional(field.name, target);
                });
   for (const std::string_view stop : {"until_time", "until_amplitude"})

@@ -317,7 +317,9 @@ Scene read_forced_scene(ObjectReader object) {
   Scene scene;
   read_numbers(object, scene, scene_fields, scene_damper_fields,
                [](ObjectReader& from, const SceneField& field, double& number, const std::string&) {
-                 from.required(field.name, number, within(field.least, field.most));
+                 const NumberRange range = within(field.least, field.most);
+                 field.component ? from.optional(field.name, number, range)
+                                 : from.required(field.name, number, range);
                });
   return scene;
 }
@@ -398,7 +400,7 @@ std::vector<std::pair<std::string, std::string>> asked_of(const Response& respon
       [&](auto& each) {
         const bool several = !has_one_damper(each.scene);
         for (const SceneField& field : scene_fields)
-          if (!several || field.number.own)
+          if ((!several || field.number.own) && !field.is_absent(field.number.in(each.scene)))
             add("/scene/" + std::string(field.name),
                 [&](JsonWriter& out) { out.field(field.name, field.number.in(each.scene)); });
         Scene dampers_alone;

@@ -76,7 +76,8 @@ struct Energy {
   double spring = 0;   // x^2 / 2
   double wall = 0;     // k q^2 / 2 in contact with a compliant wall that is displaced by q
   double paper = 0;    // the paper's own total: (v^2 + nu (v^2 + w^2) + x^2) / 2
-  double total() const { return kinetic + spring + wall; }
+  double weight = 0;   // gamma nu (x + y), from x = y = 0
+  double total() const { return kinetic + spring + wall + weight; }
 };
 
 // The share of one damper of a list in an EnergyBalance, divided by K epsilon^2.
@@ -86,19 +87,22 @@ struct DamperEnergy {
   double contact_loss = 0;                        // compliant walls: in contacts that no impact began
   std::int64_t bounce_downs = 0;                  // accumulation points jumped to
   double bounce_down_loss = 0;                    // in the impacts jumped over
+  double friction_loss = 0, drag_loss = 0;        // integrals of nu phi |w| and of nu d w^2
 };
 
 // initial.total() + forcing_work
 //     = final.total() + sum of impact_loss + contact_loss + bounce_down_loss + viscous_work
+//       + friction_loss + drag_loss
 struct EnergyBalance {
   Energy initial, final;
   // Loss of each impact, in the order of Impacts: with compliant walls of the whole contact that it begins.
   std::vector<double> impact_loss;
-  double contact_loss = 0;        // compliant walls: loss in contacts that no impact began
-  std::int64_t bounce_downs = 0;  // restitution: accumulation points jumped to
-  double bounce_down_loss = 0;    // restitution: loss in the impacts jumped over
-  double viscous_work = 0;        // taken out by the primary mass's damper, integral of 2 zeta v^2
-  double forcing_work = 0;        // put in by the forcing, integral of f0 sin(omega_f t) v
+  double contact_loss = 0;                  // compliant walls: loss in contacts that no impact began
+  std::int64_t bounce_downs = 0;            // restitution: accumulation points jumped to
+  double bounce_down_loss = 0;              // restitution: loss in the impacts jumped over
+  double viscous_work = 0;                  // taken out by the primary mass's damper, integral of 2 zeta v^2
+  double forcing_work = 0;                  // put in by the forcing, integral of f0 sin(omega_f t) v
+  double friction_loss = 0, drag_loss = 0;  // of all dampers
   // The residual of the balance: left minus right side of the equation above, divided by the sum of the
   // initial energy and the integral of the forcing's |power|; 0 if that sum is 0.
   double residual = 0;

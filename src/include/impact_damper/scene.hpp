@@ -30,6 +30,11 @@ struct SceneDamper {
   // restitution engine, whose walls are rigid, rejects.
   double y0 = 0.0;
   double w0 = 0.0;  // its initial velocity y' relative to the cavity, divided by epsilon Omega_n
+  // Forces between the secondary mass and its cavity, divided by m epsilon Omega_n^2, 0 to 1e12 (chapter 20
+  // of docs/mathematics.md).
+  double friction = 0.0;         // phi, Coulomb friction where it slides
+  double static_friction = 0.0;  // phi_s, the most that holds it where it does not; 0: phi, else at least phi
+  double drag = 0.0;  // d, of the force d y', linear in the relative velocity; divided by m Omega_n
 
   bool operator==(const SceneDamper&) const = default;
 };
@@ -47,6 +52,9 @@ struct Scene {
   double v0 = 0.0;               // its initial velocity x', divided by epsilon Omega_n
   double force_amplitude = 0.0;  // f0 = F0/(K epsilon) of the force f0 sin(omega_f t) on M, 0 = unforced
   double force_frequency = 1.0;  // omega_f = Omega_f/Omega_n, 1e-12 to 1e6
+  // gamma, the part of gravity along the cavities, towards the left walls, divided by epsilon Omega_n^2, 0 to
+  // 1e12. It acts on the secondary masses; x is counted from where the primary mass rests without them.
+  double weight = 0.0;
   // When to stop, at whichever comes first; at least one must be given. Both > 0 and <= 1e12.
   std::optional<double> until_time;       // stop at this time
   std::optional<double> until_amplitude;  // stop at the end of the first half cycle of a lower amplitude
@@ -68,6 +76,9 @@ bool has_one_damper(const Scene& scene);
 std::size_t listed_dampers(const Scene& scene);
 // The problem to report where has_one_damper() is required and false.
 Problem problem_of_several();
+
+// Whether the scene has a component that the paper's model lacks: friction, drag or weight.
+bool has_components(const Scene& scene);
 
 // Where a number of a scene is kept: in itself or, if of_damper is not null, in one of its dampers.
 template <class Whole, class Damper, class Value>
@@ -110,11 +121,14 @@ struct SceneField {
   double least, most;  // smallest and largest allowed value
   Dimension dimension;
   std::string_view meaning;
+  bool component = false;
+
+  bool is_absent(double value) const { return component && value == 0; }
 };
 // The numbers of a scene of one damper, its own and that damper's without the clearance, which is 1; and the
 // numbers of each damper of a list.
-extern const std::array<SceneField, 10> scene_fields;
-extern const std::array<SceneField, 6> scene_damper_fields;
+extern const std::array<SceneField, 14> scene_fields;
+extern const std::array<SceneField, 9> scene_damper_fields;
 const SceneField& field_of(const SceneNumber& number);
 // Returns the name of its field; in a list with the damper's number behind it, from 1: clearance_2 is that of
 // dampers[1].

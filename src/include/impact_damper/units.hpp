@@ -1,7 +1,8 @@
 // Scenes in engineers' units, and how they are made dimensionless.
 //
 // Masses are in kg, lengths in mm, velocities in mm/s, times in s, stiffnesses in N/m, forces in N,
-// frequencies in Hz, energies in J, powers in W, dampings in N s/m, rates, which count no cycles, in 1/s.
+// frequencies in Hz, energies in J, powers in W, dampings in N s/m, rates, which count no cycles, in 1/s,
+// accelerations in m/s^2, inclinations in degrees.
 // Three numbers fix all scales: the primary mass M, the stiffness K of its spring and the clearance epsilon,
 // the free travel of the secondary mass, with several dampers that of the first. Lengths are made
 // dimensionless by epsilon, times by sqrt(M/K) = 1/Omega_n, forces by K epsilon, energies by K epsilon^2;
@@ -20,7 +21,7 @@
 
 namespace impact_damper {
 
-// What a number measures. Counts and ratios have no unit; angles are listed as ratios.
+// What a number measures. Counts and ratios have no unit; angles but an inclination are listed as ratios.
 enum class Dimension {
   ratio,
   count,
@@ -34,7 +35,9 @@ enum class Dimension {
   frequency,
   rate,
   stiffness,
-  damping
+  damping,
+  acceleration,
+  inclination
 };
 // Returns the name of its unit, "" without one: "mm/s" in a scene in units, else "epsilon Omega_n".
 std::string_view unit_of(Dimension dimension, bool in_units);
@@ -49,8 +52,8 @@ struct Scales {
   double length = 1;     // epsilon, mm
 
   // of() returns the size of one dimensionless unit in engineers' units, in_si() in SI; both return 1 for
-  // ratios and counts. Of frequencies it is Omega_n / (2 pi), that of omega_f = 1; of damping 2 sqrt(K M),
-  // critical damping.
+  // ratios, counts and inclinations. Of frequencies it is Omega_n / (2 pi), that of omega_f = 1; of damping 2
+  // sqrt(K M), critical damping.
   double of(Dimension dimension) const;
   double in_si(Dimension dimension) const;
 
@@ -72,7 +75,11 @@ struct DamperInUnits {
   std::optional<double> contact_stiffness;          // of a wall, N/m; absent: SceneDamper's default k times K
   // Each is 0 if absent: distance from the left wall, mm; velocity relative to the cavity, mm/s.
   std::optional<double> secondary_displacement, secondary_velocity;
+  // Coefficients of friction in the cavity, 0 if absent, the static one if absent the other; drag on the
+  // velocity relative to the cavity, N s/m, 0 if absent.
+  std::optional<double> friction_coefficient, static_friction_coefficient, drag;
 };
+inline constexpr double standard_gravity = 9.80665;  // m/s^2
 
 // Every number that may be given; an absent one has the default that its comment names. Allowed values:
 // unit_fields.
@@ -83,6 +90,9 @@ struct SceneInUnits {
   std::optional<double> initial_displacement, initial_velocity;  // of the primary mass; mm, mm/s
   std::optional<double> exciting_force,
       exciting_frequency;  // amplitude, N, absent: 0; Hz, absent: Omega_n / (2 pi)
+  // Of the cavities from the horizontal, their left walls below; degrees, absent: 0. Acceleration of gravity,
+  // m/s^2, absent: standard_gravity. With them friction_coefficient becomes a force, and weight one.
+  std::optional<double> inclination, gravity;
   std::optional<double> until_seconds, until_millimetres;              // as in Scene; s, mm; at least one
   std::vector<DamperInUnits> dampers = std::vector<DamperInUnits>(1);  // 1 to most_dampers
 
@@ -102,8 +112,10 @@ struct UnitField {
   Dimension dimension;       // a ratio has the same name and meaning in a dimensionless scene
   std::string_view becomes;  // the dimensionless field that is made of it; "" where it only scales
   std::string_view meaning;
+
+  static bool is_absent(double) { return false; }  // as of a SceneField; what is given is written
 };
-extern const std::array<UnitField, 16> unit_fields;
+extern const std::array<UnitField, 21> unit_fields;
 
 // The problem of a number of a damper that is given beside a list.
 inline constexpr std::string_view beside_dampers =

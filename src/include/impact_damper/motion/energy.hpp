@@ -31,8 +31,12 @@ Energy energy_of_masses(const Real& x, const Real& v, std::size_t count, Of&& of
     paper += nu * (v * v + w * w);
     walls += wall;
   }
-  return {double(Real(kinetic / 2)), double(Real(x * x / 2)), double(Real(walls / 2)),
-          double(Real((paper + x * x) / 2))};
+  Energy energy;
+  energy.kinetic = double(Real(kinetic / 2));
+  energy.spring = double(Real(x * x / 2));
+  energy.wall = double(Real(walls / 2));
+  energy.paper = double(Real((paper + x * x) / 2));
+  return energy;
 }
 // Returns the kinetic energy of a secondary mass, where x' = v and y' = w.
 template <class Real>
