@@ -517,7 +517,7 @@ TEST_CASE("each entry of a run reads back as it was, be it absent, zero or neith
   for (const Engine& engine : {two_body_exact, restitution_on_a_budget, lagged_cem, cem_of_two_rates}) {
     Run run = full_run(engine);
     check_same(parse_run("run.json", run_text(run)), run);
-    run.scene = {0.3, 5, 6, 9, 10, 11, {}, {{0.1, 0.2, 1, 4, 0.7, 8}}};
+    run.scene = {0.3, 5, 6, 9, 10, 0, 11, {}, {{0.1, 0.2, 1, 4, 0.7, 8}}};
     check_same(parse_run("run.json", run_text(run)), run);
     run.scene.until_amplitude = 0.5;
     run.scene.damping_ratio = run.scene.x0 = run.scene.v0 = run.scene.damper().y0 = run.scene.damper().w0 = 0;

@@ -7,6 +7,7 @@
 
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/simulate.hpp"
+#include "rejection.hpp"
 
 using namespace impact_damper;
 
@@ -143,7 +144,9 @@ TEST_CASE("each unit has a name in a scene in units, without units, and as the e
         "frequency: Hz, Omega_n, _Hz\n"
         "rate: 1/s, Omega_n, _per_s\n"
         "stiffness: N/m, K, _N_per_m\n"
-        "damping: N s/m, 2 sqrt(K M), _N_s_per_m\n");
+        "damping: N s/m, 2 sqrt(K M), _N_s_per_m\n"
+        "acceleration: m/s^2, epsilon Omega_n^2, _m_per_s2\n"
+        "inclination: deg, deg, _deg\n");
 }
 
 TEST_CASE("what one unit is in engineers' units and in SI is worked out by hand") {
@@ -165,6 +168,44 @@ TEST_CASE("what one unit is in engineers' units and in SI is worked out by hand"
   is(Dimension::rate, 20, 20);
   is(Dimension::stiffness, 16000, 16000);
   is(Dimension::damping, 1600, 1600);
+  is(Dimension::acceleration, 4, 4);  // 0.01 m times (20/s)^2
+  is(Dimension::inclination, 1, 1);
+}
+
+TEST_CASE("friction, drag, inclination and gravity are made dimensionless as worked out by hand") {
+  SceneInUnits scene = mast();
+  scene.damper().friction_coefficient = 0.2;
+  CHECK(dimensionless(scene).damper().friction == near(0.2 * 9.80665 / 4));
+  CHECK(dimensionless(scene).damper().static_friction == 0);
+  CHECK(dimensionless(scene).weight == 0);
+  scene.damper().static_friction_coefficient = 0.3;
+  scene.damper().drag = 16;  // by 1.6 kg times 20/s
+  scene.gravity = 8;
+  scene.inclination = 60;
+  Scene made = dimensionless(scene);
+  CHECK(made.damper().friction == near(0.2 * 2 * 0.5));
+  CHECK(made.damper().static_friction == near(0.3 * 2 * 0.5));
+  CHECK(made.damper().drag == near(0.5));
+  CHECK(made.weight == near(2 * 0.86602540378443865));
+  scene.inclination = 90;
+  made = dimensionless(scene);
+  CHECK(made.damper().friction == 0);
+  CHECK(made.weight == near(2));
+  scene.inclination = 30;
+  CHECK(dimensionless(scene).weight == near(1));
+  CHECK(contains(rejection_of<InputError>([] {
+                   parse_scene("s.json", R"({"mass": 1, "stiffness": 1, "secondary_mass": 1, "clearance": 1,
+                       "until_seconds": 1, "inclination": 91, "friction_coefficient": 0.2,
+                       "static_friction_coefficient": 0.1})");
+                 }),
+                 "/inclination: must be >= 0 and <= 90, got 91"));
+  // drag is a key of both kinds, and tells neither.
+  CHECK(parse_scene("s.json", R"({"drag": 0.5, "until_time": 1})").damper().drag == 0.5);
+  CHECK(parse_scene("s.json",
+                    R"({"drag": 16, "mass": 40, "stiffness": 16000, "secondary_mass": 1.6, "clearance": 10,
+                                  "until_seconds": 1})")
+            .damper()
+            .drag == near(0.5));
 }
 
 TEST_CASE("a mass outside its cavity and a heavy one are cautioned about, and nothing else is") {

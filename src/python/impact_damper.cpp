@@ -144,7 +144,8 @@ impacts       time, wall (0 left, 1 right), relative_velocity (just before), pha
               nan before the first zero crossing and after the last), amplitude (of the half cycle), displacement (x)
 contacts      begin, end, wall: each contact with a wall, short or stuck
 energy        initial and final energy, impact_loss (of each impact), its sum impact_loss_total, contact_loss,
-              bounce_downs and bounce_down_loss, viscous_work, forcing_work, residual (of the balance)
+              bounce_downs and bounce_down_loss, viscous_work, forcing_work, residual (of the balance); with
+              friction, weight or drag also friction_loss and drag_loss
 history       time, x, v, y, w, only if it was asked for: displacement and velocity of the primary mass; distance of
               the secondary mass from the left wall, and its velocity in the cavity
 units         only of a scene in units: what one unit of length, time, velocity, mass, force and energy is in SI)";

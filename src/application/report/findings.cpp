@@ -195,6 +195,11 @@ double Findings::energy_to_impacts() const {
   return balance.impact_loss_total() + balance.contact_loss + balance.bounce_down_loss;
 }
 
+double Findings::energy_lost() const {
+  const EnergyBalance& balance = *run.energy;
+  return energy_to_impacts() + balance.viscous_work + balance.friction_loss + balance.drag_loss;
+}
+
 Findings examine(const Subject& subject, const EnsembleOptions& ensemble, const Progress& progress) {
   Findings findings;
   findings.subject = subject;

@@ -104,8 +104,10 @@ struct Findings {
   bool forced() const { return subject.scene.force_amplitude != 0; }
   bool several() const { return !has_one_damper(subject.scene); }
   Run run_of(std::size_t damper) const;  // of one of several, as it sees it (run_of_damper); else `run`
-  double energy_to_impacts()
-      const;  // divided by K epsilon^2; includes contacts without an impact and bounce-downs
+  // What impacts took, contacts without an impact and bounce-downs included, and what was lost in all;
+  // divided by K epsilon^2.
+  double energy_to_impacts() const;
+  double energy_lost() const;
 };
 inline constexpr double lost_spread = 0.01;
 

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "application/report/quantities.hpp"
+#include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/io/provenance.hpp"
 #include "impact_damper/io/scene_file.hpp"
 #include "impact_damper/units.hpp"
@@ -150,6 +152,13 @@ std::string scene_table(const Subject& subject) {
     table.row("Secondary mass, from the left wall", "y", damper.y0, length);
     table.row("Its velocity in the cavity", "y′", damper.w0, velocity);
   }
+  if (!several && damper.friction != 0)
+    table.row("Friction, by the mass", "φ", damper.friction, acceleration);
+  if (!several && damper.static_friction != 0)
+    table.row("Static friction, by the mass", "φ<sub>s</sub>", damper.static_friction, acceleration);
+  if (!several && damper.drag != 0) table.row("Drag in the cavity", "d", damper.drag, ratio);
+  if (scene.weight != 0)
+    table.row("Weight towards the left wall, by the mass", "γ", scene.weight, acceleration);
   if (scene.force_amplitude != 0) {
     table.row("Exciting force, amplitude", "f", scene.force_amplitude, force);
     table.row("Its frequency", "ω", scene.force_frequency, frequency);
@@ -175,6 +184,13 @@ std::string dampers_table(const Subject& subject) {
                               {"place at first", "y", &SceneDamper::y0, length},
                               {"velocity at first", "y′", &SceneDamper::w0, velocity}};
   if (has_rigid_walls(subject.engine)) columns.erase(columns.begin() + 3);
+  for (const Column& each :
+       {Column{"friction by the mass", "φ", &SceneDamper::friction, acceleration},
+        Column{"static friction by the mass", "φ<sub>s</sub>", &SceneDamper::static_friction, acceleration},
+        Column{"drag by <i>m</i>Ω", "d", &SceneDamper::drag, ratio}})
+    if (std::ranges::any_of(subject.scene.dampers,
+                            [&](const SceneDamper& its) { return its.*each.number != 0; }))
+      columns.push_back(each);
   const bool in_units = subject.scales.has_value();
   HtmlTable table{.caption = in_units ? "Its dampers" : "Its dampers, dimensionless", .heads = {"Damper"}};
   for (const Column& each : columns) {
@@ -229,6 +245,47 @@ std::string end_in_words(StopReason reason) {
       return used_up("number of steps", "steps");
   }
   return "";
+}
+
+// What is assumed of the cavity, and below which amplitude friction and weight hold the secondary mass in it.
+std::string cavity_sentences(const Findings& findings) {
+  const Subject& subject = findings.subject;
+  const Scene& scene = subject.scene;
+  const Quantities quantities(subject.scales);
+  const double omega = findings.forced() ? scene.force_frequency : 1 / std::sqrt(1 + secondary_mass(scene));
+  const auto locking = [&](double most) { return quantities.length(locking_amplitude(omega, most)); };
+  const std::string damps_nothing = " the primary mass swings with it and is not damped by it";
+  if (has_components(scene)) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const SceneDamper& damper : scene.dampers)
+      least = std::min(least, std::max(damper.friction, damper.static_friction) + scene.weight);
+    if (least == 0) return "";
+    return paragraph_html("Below an amplitude of " + locking(least) + " friction and weight keep " +
+                          (findings.several() ? "all secondary masses at rest in their cavities:"
+                                              : "the secondary mass at rest in its cavity:") +
+                          damps_nothing + ".");
+  }
+  std::string text =
+      "It is assumed that the secondary mass moves in a level cavity without friction, as on rollers or on a "
+      "thread. ";
+  if (subject.scales) {
+    const double g = standard_gravity / subject.scales->of(Dimension::acceleration);
+    text +=
+        "As a block that slides with a coefficient of friction of 0.1, 0.2 or 0.3 it would be held in the "
+        "cavity below an amplitude of " +
+        locking(0.1 * g) + ", " + locking(0.2 * g) + " or " + locking(0.3 * g) +
+        ", and in an upright cavity it would not leave the floor below " + locking(g) + ":" + damps_nothing +
+        " there. <code>friction_coefficient</code> and <code>inclination</code> in "
+        "the scene, with <code>--engine cem</code>, compute more.";
+  } else {
+    text +=
+        "With a friction φ between them, divided by the mass and by εΩ², it would be held there below an "
+        "amplitude of about φε:" +
+        damps_nothing +
+        ". <code>--friction</code> and <code>--weight</code>, with "
+        "<code>--engine cem</code>, compute more.";
+  }
+  return paragraph_html(text);
 }
 
 std::string engine_sentence(const Findings& findings) {
@@ -334,7 +391,7 @@ std::string scene_html(const Findings& findings) {
                 "velocities in units of εΩ, energies in units of Kε². A scene file may give masses in "
                 "kilograms and lengths in millimetres instead; this page then gives both.</p>\n";
   return scene_table(findings.subject) + (findings.several() ? dampers_table(findings.subject) : "") +
-         scales + engine_sentence(findings);
+         scales + engine_sentence(findings) + cavity_sentences(findings);
 }
 
 }  // namespace impact_damper

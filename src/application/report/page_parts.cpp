@@ -236,7 +236,7 @@ std::string summary_html(const Findings& findings) {
   if (findings.best)
     text += "It is damped best at an amplitude of " + quantities.length(findings.best->amplitude) +
             ", as by " + as_viscous(findings.best->eta) + ". ";
-  const double impacts = findings.energy_to_impacts(), lost = impacts + findings.run.energy->viscous_work;
+  const double impacts = findings.energy_to_impacts(), lost = findings.energy_lost();
   if (findings.run.impacts->time.empty())
     text += "There is no impact at all.";
   else if (lost > 0)
@@ -306,6 +306,10 @@ std::string energy_html(const Findings& findings) {
   if (findings.forced()) row("Brought by the exciting force", balance.forcing_work);
   row("Taken by impacts", impacts);
   row("Taken by viscous damping", balance.viscous_work);
+  if (has_components(findings.subject.scene)) {
+    row("Taken by friction in the cavity", balance.friction_loss);
+    row("Taken by drag in the cavity", balance.drag_loss);
+  }
   row("Left at the end", balance.final.total());
 
   std::string text = "There are no impacts. ";
@@ -444,7 +448,7 @@ std::string regimes_html(const Findings& findings) {
 std::string dampers_html(const Findings& findings) {
   const Quantities quantities(findings.subject.scales);
   const Scene& scene = findings.subject.scene;
-  const double lost = findings.energy_to_impacts() + findings.run.energy->viscous_work;
+  const double lost = findings.energy_lost();
   HtmlTable table{.caption = "What each damper did, in the order of the scene file",
                   .heads = {"Damper", "clearance", "damps best at", "fails at"}};
   const bool rigid = has_rigid_walls(findings.subject.engine), free = !findings.forced();

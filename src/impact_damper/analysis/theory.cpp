@@ -156,6 +156,8 @@ double bounce_down_end(double restitution) {
   return high;
 }
 
+double locking_amplitude(double omega, double most) { return most / square(omega); }
+
 double accumulation_time(double restitution, double acceleration, double rebound_speed) {
   return 2 * rebound_speed / (acceleration * (1 - restitution));
 }

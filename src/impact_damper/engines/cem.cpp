@@ -111,9 +111,7 @@ std::vector<Problem> problems_of(const Scene& scene, const Cem& options) {
              rounded(fastest_contact_frequency(scene)) + ", " + std::string(name_of(options.damper)) +
              " damper); take a smaller step, or run it all the same with --unstable"});
   }
-  if (options.large_step && has_components(scene)) {
-    problems.push_back({"large_step", "must be absent beside friction, weight and drag"});
-  } else if (options.large_step) {
+  if (options.large_step) {
     const double large = *options.large_step;
     const double half_period = scene.force_amplitude != 0 ? std::numbers::pi / scene.force_frequency : 2;
     if (!(large > h && large < 2)) {
@@ -125,6 +123,10 @@ std::vector<Problem> problems_of(const Scene& scene, const Cem& options) {
                                             ", half a period of the forcing, got " + number_text(large)});
     }
   }
+  for (const auto& [name, option] :
+       {std::pair("large_step", &Cem::large_step), {"stuck_speed", &Cem::stuck_speed}})
+    if (has_components(scene) && options.*option)
+      problems.push_back({name, "must be absent beside friction, weight and drag"});
   return problems;
 }
 

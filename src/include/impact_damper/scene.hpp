@@ -30,7 +30,7 @@ struct SceneDamper {
   // restitution engine, whose walls are rigid, rejects.
   double y0 = 0.0;
   double w0 = 0.0;  // its initial velocity y' relative to the cavity, divided by epsilon Omega_n
-  // Forces between the secondary mass and its cavity, divided by m epsilon Omega_n^2, 0 to 1e12 (chapter 20
+  // Forces between the secondary mass and its cavity, divided by m epsilon Omega_n^2, 0 to 1e12 (chapter 18
   // of docs/mathematics.md).
   double friction = 0.0;         // phi, Coulomb friction where it slides
   double static_friction = 0.0;  // phi_s, the most that holds it where it does not; 0: phi, else at least phi

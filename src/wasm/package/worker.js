@@ -15,16 +15,17 @@ function answer(message) {
 }
 
 // Promises of the two modules, each compiled for the first scene that needs it: the smaller one knows scenes of one damper
-// only, the larger one also those whose key "dampers" is a list of several.
-let forOne, forLists;
+// without friction, weight and drag, the larger one all.
+let forOne, forAll;
+const ofAll = /^(dampers|weight|inclination|drag|(static_)?friction(_coefficient)?)$/;
 function simulatorFor(scene) {
-  let listed = false;
+  let keys = [];
   try {
-    listed = "dampers" in JSON.parse(scene);
+    keys = Object.keys(JSON.parse(scene));
   } catch {
     // No JSON object, so no scene: the smaller module says what is wrong with it.
   }
-  return listed ? (forLists ??= loadWithLists()) : (forOne ??= load());
+  return keys.some((key) => ofAll.test(key)) ? (forAll ??= loadWithLists()) : (forOne ??= load());
 }
 
 const listen = async ({ data }) => {

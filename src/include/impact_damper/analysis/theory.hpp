@@ -75,6 +75,12 @@ BounceDown bounce_down(double restitution, double amplitude);
 // 2.05 for e = 0.4, 5.23 for 0.6, 21.6 for 0.8. e in [0, 0.95].
 double bounce_down_end(double restitution);
 
+// --- Friction and weight -----------------------------------------------------------------------------------
+// The largest amplitude at which a secondary mass that does not move in its cavity stays there (M18.4) and
+// damps nothing: omega^2 A = |x''| <= most. omega: the frequency of the motion, > 0; without damping and force
+// 1/sqrt(1 + nu). most >= 0: phi_s; on the floor of a cavity that is not level phi_s + gamma.
+double locking_amplitude(double omega, double most);
+
 // Under a constant relative acceleration a > 0 into the wall and a first rebound speed w0 >= 0 the bounces
 // accumulate after T = sum of 2 w0 e^n / a over n >= 0 = 2 w0 / (a (1 - e)). e < 1.
 double accumulation_time(double restitution, double acceleration, double rebound_speed);

@@ -53,9 +53,10 @@ class CemBalance {
     if (!balance_) return;
     viscous_work_ += weight * 2 * masses_.zeta * s.v * s.v;
     forcing_work_ += weight * masses_.force_at(time) * s.v;
-    for (const std::size_t i : masses_.in_contact) {
+    for (const std::size_t i : masses_.coupled) {
       auto& m = masses_[i];
-      m.work += weight * m.nu * m.c * s.w[i] * s.w[i];
+      if (m.wall) m.work += weight * m.nu * m.c * s.w[i] * s.w[i];
+      if (m.drag != 0) m.drag_loss += weight * m.nu * m.drag * s.w[i] * s.w[i];
     }
   }
   // Adds what has been summed over steps.
@@ -65,16 +66,28 @@ class CemBalance {
     const auto sums = steps_.take_sums();
     viscous_work_ += masses_.zeta * sums.vv / (2 * h);
     forcing_work_ += sums.fv / 2;
-    for (const std::size_t i : masses_.in_contact) {
+    for (const std::size_t i : masses_.coupled) {
       auto& m = masses_[i];
-      m.work += m.nu * m.c * m.sum_ww / (4 * h);
-      m.sum_ww = 0;
+      if (m.wall) m.work += m.nu * m.c * m.sum_ww / (4 * h);
+      if (m.drag != 0) m.drag_loss += m.nu * m.drag * m.sum_drag / (4 * h);
+      m.sum_ww = m.sum_drag = 0;
     }
   }
-  // Ends a segment at a time in its last step.
+  // Begins a segment at `time`, in the state s.
+  void open(const Real& time, const State& s) {
+    add_powers(-steps_.h() / 2, time, s);
+    for (std::size_t i = 0; masses_.components && i < masses_.size(); ++i)
+      masses_[i].slid_from = masses_.y(s, i);
+  }
+  // Ends it at a time in its last step.
   void close(const Real& at) {
     if (!balance_) return;
     add_sums();
+    for (std::size_t i = 0; masses_.components && i < masses_.size(); ++i) {
+      auto& m = masses_[i];
+      const Real y = m.origin_of_q() + m.arc(steps_.h()).at(at);
+      if (!m.stuck) m.friction_loss += m.nu * m.friction * (m.slides * (y - m.slid_from));
+    }
     add_powers((at - steps_.h()) / 2, steps_.begin(), steps_.state_at(Real(0)));
     add_powers(at / 2, steps_.begin() + at, steps_.state_at(at));
   }
@@ -89,15 +102,21 @@ class CemBalance {
     balance_->viscous_work = double(viscous_work_);
     balance_->forcing_work = double(forcing_work_);
     const double largest = std::max(largest_energy_, std::abs(balance_->forcing_work));
-    Real contact_loss = 0, losses = 0;
+    Real contact_loss = 0, losses = 0, friction_loss = 0, drag_loss = 0;
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       const auto& m = masses_[i];
       of_damper(i).impact_loss = double(m.impact_loss);
       of_damper(i).contact_loss = double(m.contact_loss);
+      of_damper(i).friction_loss = double(m.friction_loss);
+      of_damper(i).drag_loss = double(m.drag_loss);
       contact_loss += m.contact_loss;
-      losses += m.loss;
+      friction_loss += m.friction_loss;
+      drag_loss += m.drag_loss;
+      losses += m.loss + (m.friction_loss + m.drag_loss);
     }
     balance_->contact_loss = double(contact_loss);
+    balance_->friction_loss = double(friction_loss);
+    balance_->drag_loss = double(drag_loss);
     const Real open =
         (balance_->initial.total() + forcing_work_) - (balance_->final.total() + losses + viscous_work_);
     balance_->residual = largest > 0 ? double(open) / largest : 0.0;
@@ -108,10 +127,16 @@ class CemBalance {
   DamperEnergy& of_damper(std::size_t i) { return of_dampers_[masses_[i].number]; }
   double kinetic(const State& s, std::size_t i) const { return kinetic_energy(masses_[i].nu, s.v, s.w[i]); }
   Energy energy(const State& s) {
-    const Energy energy = energy_of_masses(s.x, s.v, masses_.size(), [&](std::size_t i) {
+    Energy energy = energy_of_masses(s.x, s.v, masses_.size(), [&](std::size_t i) {
       const auto& m = masses_[i];
       return EnergyTerms<Real>{m.nu, s.w[i], m.wall ? Real(m.k * s.q[i] * s.q[i]) : Real(0)};
     });
+    if (masses_.weight != 0) {
+      Real weight = 0;
+      for (std::size_t i = 0; i < masses_.size(); ++i)
+        weight += masses_[i].nu * masses_.weight * (s.x + masses_.y(s, i));
+      energy.weight = double(weight);
+    }
     largest_energy_ = std::max(largest_energy_, energy.total());
     return energy;
   }

@@ -1,5 +1,6 @@
 // The changes in one step of the component element method: masses that come to a wall or leave it, and which
-// of them come to stick to it or cease to, where the option Cem::stuck_speed allows sticking.
+// of them come to stick to it or cease to, where the option Cem::stuck_speed allows sticking; and with
+// friction masses that come to rest in their cavities, or that it ceases to hold there.
 #pragma once
 
 #include <algorithm>
@@ -19,6 +20,7 @@ struct CemChange {
   std::size_t index;
   Real at;
   bool joins = false;
+  bool slips = false;  // by friction: it comes to rest, or does so no more, and meets or leaves no wall
 };
 
 template <class Real, template <class> class ForEach>
@@ -40,7 +42,9 @@ class CemChanges {
       const auto& m = masses_[i];
       finite = finite && std::isfinite(double(m.now.x));
       if (m.stuck) {
-        if (const auto at = parting(m)) all_.push_back({i, *at});
+        if (const auto at = parting(m)) all_.push_back({i, *at, false, masses_.components});
+      } else if (masses_.components && !m.slides_on(m.before.dx, m.now.dx)) {
+        all_.push_back({i, m.arc(steps_.h()).extremum(Real(0), steps_.h()), false, true});
       }
       if (!(m.now.x >= m.least && m.now.x <= m.most)) all_.push_back({i, wall_crossing(m)});
     }
@@ -65,13 +69,13 @@ class CemChanges {
     for (Change& each : all_) each.at = first;
   }
 
-  // Decides which of the masses join, by Cem::stuck_speed, which must be given. Returns whether any mass
-  // joins, or one that is stuck parts.
+  // Decides which of the masses join, by Cem::stuck_speed. Returns whether any mass joins, one that is stuck
+  // parts, or one slides no more.
   bool find_joining() {
     bool any = false;
     for (Change& change : all_) {
-      change.joins = joins(change);
-      any = any || change.joins || masses_[change.index].stuck;
+      change.joins = stuck_speed_ && joins(change);
+      any = any || change.joins || change.slips || masses_[change.index].stuck;
     }
     return any;
   }
@@ -118,12 +122,16 @@ class CemChanges {
     if (!m.wall && !falls) gap.g += m.clearance;
     return gap.fall(h);
   }
-  // Returns the time in the last step at which x'' of a stuck mass changed its sign, and with it the wall's
-  // push; nothing if it did not.
+  // Returns the time in the last step at which x'' passed one of its limits for a stuck mass, at which the
+  // wall ceases to push or friction to hold it; nothing if it did not.
   std::optional<Real> parting(const CemMass<Real>& m) const {
-    const Real from = m.push() * steps_.second_before(), to = m.push() * steps_.second_after();
-    if (!(to < 0)) return {};
-    return from > 0 ? steps_.h() * from / (from - to) : Real(0);
+    const Real &h = steps_.h(), least = h * h * m.least_second, most = h * h * m.most_second;
+    const Real before = steps_.second_before(), after = steps_.second_after();
+    const bool falls = after < least;
+    if (!falls && !(after > most)) return {};
+    const Real from = falls ? Real(before - least) : Real(most - before);
+    const Real to = falls ? Real(after - least) : Real(most - after);
+    return from > 0 ? h * from / (from - to) : Real(0);
   }
   // Whether a touch begins the stuck regime (M9.9).
   bool joins(const Change& touch) const {

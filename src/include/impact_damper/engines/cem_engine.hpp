@@ -21,7 +21,7 @@
 namespace impact_damper {
 
 // Calls the observer's functions for a list or, where the scene has none, for one damper.
-template <class Observer, bool one>
+template <class Observer>
 class CemReport {
  public:
   CemReport(Observer& observer, bool is_list, std::size_t dampers)
@@ -31,14 +31,14 @@ class CemReport {
     if constexpr (DampersObserver<Observer>) {
       if (is_list_) return observer_.impact(time, wall, w, x, number);
     }
-    if constexpr (one) observer_.impact(time, wall, w, x);
+    observer_.impact(time, wall, w, x);
   }
   void contact(double begin, double end, Wall wall, std::int32_t number) {
     if (!observer_.wants_contacts()) return;
     if constexpr (DampersObserver<Observer>) {
       if (is_list_) return observer_.contact(begin, end, wall, number);
     }
-    if constexpr (one) observer_.contact(begin, end, wall);
+    observer_.contact(begin, end, wall);
   }
   template <class Masses>
   void sample(double time, const Masses& masses, const typename Masses::State& s) {
@@ -49,8 +49,7 @@ class CemReport {
         return observer_.sample(time, double(s.x), double(s.v), places_);
       }
     }
-    if constexpr (one)
-      observer_.sample(time, double(s.x), double(s.v), double(masses.y(s, 0)), double(s.w[0]));
+    observer_.sample(time, double(s.x), double(s.v), double(masses.y(s, 0)), double(s.w[0]));
   }
 
  private:
@@ -66,8 +65,8 @@ class CemEngine {
   using Change = CemChange<Real>;
 
  public:
-  // options: resolved and free of problems. ForOne takes a scene without a list of dampers or with a list of
-  // one, ForSeveral any list.
+  // options: resolved and free of problems. ForOne takes a scene of one damper without components, ForSeveral
+  // any scene.
   CemEngine(const Scene& scene, const Cem& options, Observer& observer)
       : budget_(options.budget),
         until_amplitude_(scene.until_amplitude),
@@ -113,15 +112,18 @@ class CemEngine {
   // Begins the run in the state s, with y instead of q.
   void begin(State s) {
     const auto [second, third] = masses_.begin_contacts(s, steps_.h(), joins_);
+    if (masses_.components) masses_.hold(Real(0), s, {});
     begin_segment(Real(0), s);
+    const Real second_of_x = masses_.second_of_x(Real(0), s);
     bool impact_at_once = false;
     for (std::size_t i = 0; i < masses_.size(); ++i) {
-      if (masses_.rests(s, i) && !masses_[i].stuck) steps_.lead_from_rest(i, second, third);
+      if (masses_.rests(s, i) && !masses_[i].stuck)
+        steps_.lead_from_rest(i, masses_.components ? masses_.second_of_q(s, i, second_of_x) : second, third);
       impact_at_once = impact_at_once || masses_.meets_wall(s, i);
     }
     // A force moves a primary mass at rest in the middle by x''' h^3/6, which the second-order start leaves
     // out, too. It is added, unless an impact moves the mass.
-    const bool moved_by_force = s.x == 0 && s.v == 0 && second == 0 && !impact_at_once;
+    const bool moved_by_force = s.x == 0 && s.v == 0 && second == 0 && !impact_at_once && !masses_.components;
     if (moved_by_force) steps_.lead_x_by(masses_.force.amplitude * masses_.force.frequency);
 
     half_cycles_.take_side(sign(s.x != 0 ? s.x : s.v));
@@ -130,7 +132,7 @@ class CemEngine {
     if (observer_.next_sample() <= 0) report_.sample(0, masses_, s);
   }
   void begin_segment(const Real& time, const State& s) {
-    balance_.add_powers(-steps_.h() / 2, time, s);
+    balance_.open(time, s);
     steps_.begin_segment(time, s);
   }
 
@@ -143,8 +145,8 @@ class CemEngine {
   // Whether the side of x or the sign of x' is unknown, because it has been zero until now: each step is then
   // looked at for the first movement, unless nothing can move x before the next impact.
   bool side_or_trend_unknown() const {
-    const bool at_rest = !masses_.force && masses_.in_contact.empty() && !(masses_.joined > 1) &&
-                         steps_.x().x == 0 && steps_.x().dx == 0;
+    const bool at_rest = !masses_.force && masses_.coupled.empty() && !(masses_.joined > 1) &&
+                         !steps_.is_pushed() && steps_.x().x == 0 && steps_.x().dx == 0;
     return (half_cycles_.side() == 0 || trend_ == 0) && !at_rest;
   }
   std::int64_t steps_until_look() const {  // at least one
@@ -183,7 +185,7 @@ class CemEngine {
 
     // Where masses join or part, the motion begins anew, with or without `locate`.
     bool restart = locate_ && !changes_.all().empty();
-    if (joins_ && changes_.find_joining()) restart = true;
+    if ((joins_ || masses_.components) && changes_.find_joining()) restart = true;
     bool slows_down = false;
     std::optional<State> anew;
     if (restart) {
@@ -229,11 +231,11 @@ class CemEngine {
     const Real y = m.now.x + m.origin_of_q();
     // A step too coarse can lead from one wall through to the other; with `locate` the mass leaves the first
     // wall.
-    const bool met = !m.wall || (!anew && !(y >= 0 && y <= m.clearance));
+    const bool met = !change.slips && (!m.wall || (!anew && !(y >= 0 && y <= m.clearance)));
     std::int64_t meeting = met;
     if (anew && &change == &changes_.all().front()) {  // all of them, or none
-      meeting = std::ranges::count_if(changes_.all(),
-                                      [&](const Change& each) { return !masses_[each.index].wall; });
+      meeting = std::ranges::count_if(
+          changes_.all(), [&](const Change& each) { return !each.slips && !masses_[each.index].wall; });
       if (meeting <= budget_.max_impacts - impacts_ && steps_left_ == 0)
         return finish(StopReason::step_budget, at);
     }
@@ -256,6 +258,11 @@ class CemEngine {
     for (const Change& change : changes_.all()) {
       const std::size_t i = change.index;
       const auto& m = masses_[i];
+      if (change.slips) {
+        s.w[i] = 0;
+        if (m.stuck) parted.push_back(i);
+        continue;
+      }
       const Real place = m.wall == Wall::right ? m.clearance : Real(0);
       s.q[i] = 0;
       if (!m.wall) {
@@ -275,9 +282,14 @@ class CemEngine {
       s = rates_.of_scheme(std::move(s), time, steps_.h());
     }
     trend_ = sign(s.v);
+    if (masses_.components) masses_.hold(time, s, parted);
     begin_segment(time, s);
-    for (const std::size_t i : parted)
-      steps_.lead_from_rest(i, -masses_.second_of_x(time, s), masses_.third_of_y(time, s));
+    for (const std::size_t i : parted) {
+      const Real second = masses_.second_of_x(time, s);
+      masses_.components
+          ? steps_.lead_from_rest(i, masses_.second_of_q(s, i, second), masses_.third_where_freed(time, s))
+          : steps_.lead_from_rest(i, -second, masses_.third_of_y(time, s));
+    }
   }
   void enter(std::size_t i, Wall wall, const Real& time, const Real& w) {
     masses_.set_wall(i, wall);
@@ -334,7 +346,7 @@ class CemEngine {
   const Real end_time_;    // of horizon_
   const bool locate_, joins_, is_list_;
   Observer& observer_;
-  CemReport<Observer, Masses::one> report_;
+  CemReport<Observer> report_;
 
   Masses masses_;
   CemSteps<Real, ForEach> steps_;

@@ -31,24 +31,35 @@ template <class Real>
 struct CemMass {
   std::int32_t number;  // in the scene
   Real nu, k, clearance;
-  Real c, omega_2;                // of its wall, whether the mass is there or not
-  std::int64_t steps_of_contact;  // small steps in the nominal contact time
-  std::optional<Wall> wall{};     // the wall it is at, in contact or stuck
-  bool stuck = false;
-  CemMoment<Real> before{}, now{};  // q before and after the last step
-  // For a list: dq_{n+1} = dq_dq dq_n + dq_q q_n + dq_dx (dx_n - dx_{n+1}), dx_{n+1} = ... + dx_dq dq_n +
-  // dx_q q_n.
-  Real dq_dq = 1, dq_q = 0, dq_dx = 1, dx_dq = 0, dx_q = 0;
+  Real c, omega_2;                       // of its wall, whether the mass is there or not
+  std::int64_t steps_of_contact;         // small steps in the nominal contact time
+  Real friction, static_friction, drag;  // phi, phi_s and d of chapter 18
+  std::optional<Wall> wall{};            // the wall it is at, in contact or stuck
+  bool stuck = false;                    // to the primary mass: to a wall, or held by friction
+  Real slides{};                         // with friction the sign of y' while it slides, else 0
+  Real least_second{}, most_second{};    // limits of x'' while it stays stuck
+  CemMoment<Real> before{}, now{};       // q before and after the last step
+  // For a list: dq_{n+1} = dq_dq dq_n + dq_q q_n + dq_dx (dx_n - dx_{n+1}) + dq_1,
+  // dx_{n+1} = ... + dx_dq dq_n + dx_q q_n.
+  Real dq_dq = 1, dq_q = 0, dq_dx = 1, dq_1 = 0, dx_dq = 0, dx_q = 0;
   Real least{}, most{};  // limits of q while nothing changes
   Real contact_begin = 0;
   std::optional<std::size_t> impact{};  // the one that began the contact
   Real work = 0, sum_ww = 0;  // lost at the wall in this contact; sum of (2 h w)^2 not yet added to it
+  Real slid_from = 0;         // y at the beginning of the segment
+  Real friction_loss = 0, drag_loss = 0, sum_drag = 0;  // sum_drag: as sum_ww, with w centred
   Real impact_loss = 0, contact_loss = 0, loss = 0;  // past contacts, with and without an impact; their sum
 
   Real origin_of_q() const { return wall == Wall::right ? clearance : Real(0); }
   Real push() const { return wall == Wall::left ? Real(1) : Real(-1); }  // sign of the wall's push
   Wall wall_ahead() const { return now.x > clearance / 2 ? Wall::right : Wall::left; }
   Arc<Real> arc(const Real& h) const { return arc_of(before, now, h); }
+  // Whether it still slides the same way, or not at all, at the end of a step with the increment dq; that of
+  // the step before is last_dq.
+  bool slides_on(const Real& last_dq, const Real& dq) const { return slides * (3 * dq - last_dq) >= 0; }
+  // The coefficients of y' and q in the force between it and the primary mass, divided by its mass.
+  Real resistance() const { return wall ? Real(c + drag) : drag; }
+  Real spring() const { return wall ? omega_2 : Real(0); }
 };
 
 // The state of all masses: x and x', and q and q' of each secondary mass.
@@ -65,13 +76,24 @@ struct CemMasses {
 
   // All in flight.
   CemMasses(const Scene& scene, const Cem& options)
-      : zeta(scene.damping_ratio), force{Real(scene.force_amplitude), Real(scene.force_frequency)} {
+      : zeta(scene.damping_ratio),
+        force{Real(scene.force_amplitude), Real(scene.force_frequency)},
+        weight(scene.weight),
+        components(!one && has_components(scene)) {
     const auto keep = [&](std::size_t place, std::int32_t number) {
       const SceneDamper& its = scene.dampers[number];
       const auto wall = regime_equations<Real>(scene, its, options.calibration, Regime::contact);
       const double steps = nominal_contact_time(its) / double(Real(*options.time_step));
-      all[place] = {number, wall.nu,      its.wall_stiffness, its.clearance,
-                    wall.c, wall.omega_2, whole_steps(steps)};
+      all[place] = {number,
+                    wall.nu,
+                    its.wall_stiffness,
+                    its.clearance,
+                    wall.c,
+                    wall.omega_2,
+                    whole_steps(steps),
+                    its.friction,
+                    std::max(its.friction, its.static_friction),
+                    its.drag};
     };
     if constexpr (one) {
       keep(0, 0);  // a sort of one is a sixtieth of the packed module for browsers
@@ -79,6 +101,8 @@ struct CemMasses {
       all.resize(scene.dampers.size());
       std::size_t place = 0;
       for (const std::int32_t number : damper_order(scene.dampers)) keep(place++, number);
+      for (std::size_t i = 0; i < all.size(); ++i)
+        if (all[i].drag != 0) coupled.push_back(i);
     }
   }
 
@@ -111,11 +135,18 @@ struct CemMasses {
     if (!wall || stuck) m.dq_dq = m.dq_dx = Real(!stuck), m.dq_q = m.dx_dq = m.dx_q = 0;
     m.least = !wall || stuck ? Real(0) : wall == Wall::left ? -infinity : smallest;
     m.most = !wall ? m.clearance : stuck ? Real(0) : wall == Wall::left ? -smallest : infinity;
+    if (!components) {
+      m.least_second = wall == Wall::left ? Real(0) : -infinity;
+      m.most_second = wall == Wall::left ? infinity : Real(0);
+    } else if (stuck) {  // held by friction, wherever it is
+      m.least = -infinity;
+      m.most = infinity;
+    }
     if constexpr (one) {
-      in_contact.resize(wall && !stuck ? 1 : 0);
+      coupled.resize(wall && !stuck ? 1 : 0);
     } else {
-      std::erase(in_contact, i);
-      if (wall && !stuck) in_contact.insert(std::ranges::lower_bound(in_contact, i), i);
+      std::erase(coupled, i);
+      if (!stuck && (wall || m.drag != 0)) coupled.insert(std::ranges::lower_bound(coupled, i), i);
     }
     if (!stuck && !was_stuck) return;
     joined = 1;
@@ -124,14 +155,47 @@ struct CemMasses {
     for (const CemMass<Real>& each : all) {
       if (!each.stuck) continue;
       joined += each.nu;
-      (each.wall == Wall::left ? least_second : most_second) = 0;
+      least_second = std::max(least_second, each.least_second);
+      most_second = std::min(most_second, each.most_second);
+    }
+  }
+
+  // Sets which of the masses that do not move in their cavities friction holds, as many as it can, and which
+  // way the others with friction slide (18.2), in the state s with q. freed: masses that it just ceased to
+  // hold.
+  void hold(const Real& time, const State& s, const std::vector<std::size_t>& freed) {
+    const Real second_before = second_of_x(time, s);
+    for (std::size_t i = 0; i < size(); ++i) {
+      CemMass<Real>& m = all[i];
+      if (m.static_friction == 0) continue;
+      const Real at_rest = -(weight + m.spring() * s.q[i]);  // x'' that needs no friction
+      m.least_second = at_rest - m.static_friction;
+      m.most_second = at_rest + m.static_friction;
+      const bool is_freed = std::ranges::find(freed, i) != freed.end(), holds = s.w[i] == 0 && !is_freed;
+      if (is_freed) m.slides = Real(second_before < at_rest ? 1 : -1);
+      if (s.w[i] != 0) m.slides = Real((s.w[i] > 0) - (s.w[i] < 0));
+      if (holds || m.stuck) set_wall(i, m.wall, holds);
+    }
+    for (;;) {
+      const Real second = second_of_x(time, s);
+      std::optional<std::size_t> first;
+      Real most = 0;
+      for (std::size_t i = 0; i < size(); ++i) {
+        const Real excess = std::max(all[i].least_second - second, second - all[i].most_second);
+        if (all[i].stuck && excess > most) first = i, most = excess;
+      }
+      if (!first) return;
+      CemMass<Real>& m = all[*first];
+      m.slides = Real(second < m.least_second ? 1 : -1);
+      set_wall(*first, m.wall);
     }
   }
 
   // Sets the walls of all masses at a release in the state s, which has y instead of q and is given q. No
   // impact begins the contacts of these masses:
   // - those that overlap a wall;
-  // - those at rest at a wall and pressed to it; they are stuck if `joins`. They are pressed if
+  // - those at rest at a wall and pressed to it, unless friction holds them; they are stuck if `joins`. They
+  // are pressed if
   //   y'' h^2/2 + y''' h^3/6, the way of such a mass in one step, leads into the wall. If `joins`, and y''
   //   and y''' are zero to rounding, the first later derivative that is not zero decides instead.
   // Returns y'' and y''' of a mass at rest in flight.
@@ -144,12 +208,13 @@ struct CemMasses {
       begin_contact(i, s.q[i] < 0                  ? std::optional(Wall::left)
                        : s.q[i] > all[i].clearance ? std::optional(Wall::right)
                                                    : std::nullopt);
-    const Real second = -second_of_x(Real(0), s), third = s.v - force.amplitude * force.frequency;
+    if (components) hold(Real(0), s, {});
+    const Real second = -(second_of_x(Real(0), s) + weight), third = s.v - force.amplitude * force.frequency;
     const Lead<Real> lead = lead_of_x(Real(2 * zeta), Real(1), force, force.phase(Real(0)), s.x, s.v);
-    const bool by_lead = joins && lead.order > 3 && in_contact.empty();
+    const bool by_lead = joins && lead.order > 3 && coupled.empty();
     const Real moves = by_lead ? Real(-lead.value) : Real(second + h / 3 * third);
     for (std::size_t i = 0; i < size(); ++i) {
-      if (!rests(s, i)) continue;
+      if (!rests(s, i) || all[i].stuck) continue;
       if (s.q[i] == 0 && moves < 0) begin_contact(i, Wall::left, joins);
       if (s.q[i] > 0 && moves > 0) begin_contact(i, Wall::right, joins);
     }
@@ -172,10 +237,16 @@ struct CemMasses {
     const CemMass<Real>& m = all[i];
     return m.wall && !m.stuck ? m.c * s.w[i] + m.omega_2 * s.q[i] : Real(0);
   }
+  // The force R of (M18.1) on the primary mass, divided by the secondary mass; 0 if that is stuck.
+  Real force_of(const State& s, std::size_t i) const {
+    const CemMass<Real>& m = all[i];
+    if (!components) return wall_force(s, i);
+    return m.stuck ? Real(0) : m.resistance() * s.w[i] + m.spring() * s.q[i] + m.friction * m.slides;
+  }
   // The sum of the primary mass and all masses at walls, divided by the primary mass.
   Real with_walls() const {
     Real mass = joined;
-    for (const std::size_t i : in_contact) mass += all[i].nu;
+    for (const std::size_t i : coupled) mass += all[i].nu;
     return mass;
   }
   // x'' by (M9.5) with `mass` in place of 1 + nu.
@@ -184,29 +255,45 @@ struct CemMasses {
   }
   // x'' by (M17.9), with `mass` for the primary mass and the masses joined to it.
   Real second_of_x(const Real& time, const State& s, const Real& mass) const {
-    if (mass > 1 && in_contact.empty()) return second_as_one(time, s, mass);
+    if (mass > 1 && coupled.empty() && !components) return second_as_one(time, s, mass);
     Real sum = force_at(time);
-    for (const std::size_t i : in_contact) sum += all[i].nu * wall_force(s, i);
+    if (components) {
+      for (std::size_t i = 0; i < size(); ++i) sum += all[i].nu * force_of(s, i);
+      sum -= (mass - 1) * weight;
+    } else {
+      for (const std::size_t i : coupled) sum += all[i].nu * wall_force(s, i);
+    }
     return (sum - (2 * zeta * s.v + s.x)) / mass;
   }
   Real second_of_x(const Real& time, const State& s) const { return second_of_x(time, s, joined); }
   Real second_of_q(const State& s, std::size_t i, const Real& x2) const {  // x2: x''
-    return all[i].stuck ? Real(0) : Real(-wall_force(s, i) - x2);
+    return all[i].stuck ? Real(0) : Real((-force_of(s, i) - x2) - weight);
   }
   // y''' of a mass in flight where x'' = 0.
   Real third_of_y(const Real& time, const State& s) const {
     Real third = s.v - rate_of(force, time);
-    for (const std::size_t i : in_contact)
+    for (const std::size_t i : coupled)
       third -= all[i].nu * (all[i].omega_2 * s.w[i] - all[i].c * wall_force(s, i));
     return third;
+  }
+  // The same of a mass that friction ceases to hold.
+  Real third_where_freed(const Real& time, const State& s) const {
+    const Real second = second_of_x(time, s);
+    Real sum = rate_of(force, time) - 2 * zeta * second - s.v;
+    for (const std::size_t i : coupled)
+      sum += all[i].nu * (all[i].resistance() * second_of_q(s, i, second) + all[i].spring() * s.w[i]);
+    return -sum / joined;
   }
 
   Real zeta;
   Forcing<Real> force;
-  ForEach<CemMass<Real>> all;           // in the order of damper_order.hpp
-  std::vector<std::size_t> in_contact;  // masses in contact that are not stuck, ascending
-  Real joined = 1;                      // the primary mass and those stuck to it, divided by the first
-  Real least_second{}, most_second{};   // limits of x'' while these stay stuck
+  Real weight;                 // gamma
+  bool components;             // whether the scene has friction, drag or weight
+  ForEach<CemMass<Real>> all;  // in the order of damper_order.hpp
+  // Masses in contact or with drag, on which a force of q or q' acts, that are not stuck; ascending.
+  std::vector<std::size_t> coupled;
+  Real joined = 1;                     // the primary mass and those stuck to it, divided by the first
+  Real least_second{}, most_second{};  // limits of x'' while these stay stuck
 };
 
 }  // namespace impact_damper

@@ -141,14 +141,14 @@ class CemRates {
   // change(pace, s): changes it from the last step on, where the motion's own state is s.
   template <class Change>
   std::int64_t choose(const Change& change) const {
-    if (masses_.in_contact.empty()) {
+    if (masses_.coupled.empty()) {
       // A segment's first step shows what its motion is.
       return steps_.number() == 0 ? 1 : choose_without_contact(change);
     }
     // A contact begins in small steps.
     const bool small = steps_.h() == small_.h, first = steps_.number() == 0;
     std::int64_t begun = 0;
-    for (const std::size_t i : masses_.in_contact)
+    for (const std::size_t i : masses_.coupled)
       if (first || steps_.end() - masses_[i].contact_begin < small_.h)
         begun = std::max(begun, masses_[i].steps_of_contact);
     if (first) return small ? begun : 1;
@@ -160,7 +160,7 @@ class CemRates {
   State motion_at(const Real& at) const {
     if (!larger_) return steps_.state_at(at);
     const Real begin = steps_.begin(), time = begin + at;
-    if (masses_.joined > 1 || !masses_.in_contact.empty()) {
+    if (masses_.joined > 1 || !masses_.coupled.empty()) {
       State s = steps_.refined_state_at(at);
       set_velocity(s, own_velocity().from_scheme(s.x, s.v, time, steps_.h()));
       return s;
@@ -224,7 +224,7 @@ class CemRates {
     Real least = many;
     std::int64_t longest = 0;
     bool settled = true;
-    for (const std::size_t i : masses_.in_contact) {
+    for (const std::size_t i : masses_.coupled) {
       const auto& m = masses_[i];
       const Real w_pressed = -third / m.omega_2, q_pressed = -(second + m.c * w_pressed) / m.omega_2;
       const Real q = s.q[i], dq = q - q_pressed, dw = s.w[i] - w_pressed;

@@ -90,28 +90,46 @@ class CemSteps {
   void renew_coefficients() {
     if constexpr (!one) {
       const Real h = pace_.h, outer = h * masses_.zeta, h_2 = h * h, joined = masses_.joined;
-      const auto ahead = [&](const auto& m) { return centred_ ? h * m.c / 2 : Real(0); };
+      const auto ahead = [&](const auto& m) {
+        const Real of_wall = centred_ ? h * m.c / 2 : Real(0);
+        return masses_.components ? (m.wall ? of_wall : Real(0)) + h * m.drag / 2 : of_wall;
+      };
+      const auto behind = [&](const auto& m) {
+        const Real of_wall = centred_ ? h * m.c / 2 : h * m.c;
+        return masses_.components ? (m.wall ? of_wall : Real(0)) + h * m.drag / 2 : of_wall;
+      };
       Real determinant = joined + outer;
-      for (const std::size_t i : masses_.in_contact)
+      for (const std::size_t i : masses_.coupled)
         determinant += masses_[i].nu * (ahead(masses_[i]) / (1 + ahead(masses_[i])));
       const Real xx = 1 / determinant;
       of_x_.dx_dx = xx * (joined - outer);
       of_x_.dx_x = -h_2 * xx;
       of_x_.dx_f = h_2 * xx;
-      for (const std::size_t i : masses_.in_contact) {
+      for (const std::size_t i : masses_.coupled) {
         auto& m = masses_[i];
-        const Real behind = centred_ ? h * m.c / 2 : h * m.c, spring = h_2 * m.omega_2;
+        const Real spring = h_2 * m.spring();
         m.dq_dx = 1 / (1 + ahead(m));
-        m.dq_dq = m.dq_dx * (1 - behind);
+        m.dq_dq = m.dq_dx * (1 - behind(m));
         m.dq_q = -m.dq_dx * spring;
         const Real xq = xx * m.nu * (ahead(m) * m.dq_dx);
         of_x_.dx_dx += xq;
-        m.dx_dq = xx * m.nu * behind + xq * (1 - behind);
+        m.dx_dq = xx * m.nu * behind(m) + xq * (1 - behind(m));
         m.dx_q = spring * (xx * m.nu - xq);
       }
+      if (!masses_.components) return;
+      Real pushes = (1 - joined) * masses_.weight;
+      for (auto& m : masses_.all) {
+        const Real friction = m.friction * m.slides;
+        m.dq_1 = m.stuck ? Real(0) : Real(-h_2 * (friction + masses_.weight) * m.dq_dx);
+        const Real shift = m.resistance() == 0 ? Real(0) : Real(ahead(m) * m.dq_1 / h_2);
+        if (!m.stuck) pushes += m.nu * (friction + shift);
+      }
+      of_x_1_ = h_2 * xx * pushes;
     }
   }
 
+  // Whether friction or weight pushes the primary mass now.
+  bool is_pushed() const { return of_x_1_ != 0; }
   // Whether a block of 1024 steps of the segment begins: the force is then computed afresh, and the sums
   // must have been taken.
   bool begins_block() const { return number_ % block == 0; }
@@ -137,7 +155,7 @@ class CemSteps {
       : m.wall ? choose(std::integral_constant<Regime, Regime::contact>())
                : choose(std::integral_constant<Regime, Regime::flight>());
     } else {
-      take_of_all(most, side, trend);
+      masses_.components ? take_of_all<true>(most, side, trend) : take_of_all<false>(most, side, trend);
     }
   }
 
@@ -242,26 +260,33 @@ class CemSteps {
     }
   }
   // take() for a list.
+  template <bool components>
   void take_of_all(std::int64_t most, const Real side, const Real trend) {
     auto& masses = masses_.all;
-    const auto& in_contact = masses_.in_contact;
+    const auto& coupled = masses_.coupled;
     const bool forced = bool(masses_.force), stuck = masses_.joined > 1;
-    const Real dx_dx = of_x_.dx_dx, dx_x = of_x_.dx_x;
+    const Real dx_dx = of_x_.dx_dx, dx_x = of_x_.dx_x, h_2 = pace_.h * pace_.h;
     Real x = now_.x, dx = now_.dx, last_x, last_dx;
     bool uneventful;
     do {
       last_x = x;
       last_dx = dx;
       dx = dx_dx * last_dx + dx_x * x;
-      for (const std::size_t i : in_contact)
+      for (const std::size_t i : coupled)
         dx += masses[i].dx_dq * masses[i].now.dx + masses[i].dx_q * masses[i].now.x;
       if (forced) dx += of_x_.dx_f * force_.f;
+      if constexpr (components) dx += of_x_1_;
       x += dx;
       const Real slows = last_dx - dx;
       uneventful = (side * x >= 0) & (trend * dx >= 0);
       for (auto& m : masses) {
         const Real q = m.now.x, last_dq = m.now.dx;
-        const Real dq = (m.dq_dq * last_dq + m.dq_q * q) + m.dq_dx * slows, next = q + dq;
+        Real dq = (m.dq_dq * last_dq + m.dq_q * q) + m.dq_dx * slows;
+        if constexpr (components) {
+          dq += m.dq_1;
+          uneventful &= m.slides_on(last_dq, dq);
+        }
+        const Real next = q + dq;
         m.before.x = q;
         m.before.dx = last_dq;
         m.now.x = next;
@@ -272,16 +297,17 @@ class CemSteps {
         const Real v = last_dx + dx;
         sums_.vv += v * v;
         sums_.fv += force_.f * v;
-        for (const std::size_t i : in_contact) {
+        for (const std::size_t i : coupled) {
           auto& m = masses[i];
           const Real w = m.before.dx + m.now.dx;
           m.sum_ww += (centred_ ? w : 2 * m.before.dx) * w;
+          if constexpr (components) m.sum_drag += w * w;
         }
       }
       if (forced) force_.advance();
       if (stuck) {
         const Real second = second_at({x, dx}, force_.f);
-        uneventful &= (second >= masses_.least_second) & (second <= masses_.most_second);
+        uneventful &= (second >= h_2 * masses_.least_second) & (second <= h_2 * masses_.most_second);
       }
       ++number_;
     } while (uneventful && --most > 0);
@@ -291,15 +317,16 @@ class CemSteps {
   Real second_at(const Moment& x, const Real& f) const {
     const CemStep<Real>& a = one ? pace_.stuck : of_x_;
     Real second = (a.dx_dx - 1) * x.dx + a.dx_x * x.x + a.dx_f * f;
-    for (const std::size_t i : masses_.in_contact)
+    for (const std::size_t i : masses_.coupled)
       second += masses_[i].dx_dq * masses_[i].now.dx + masses_[i].dx_q * masses_[i].now.x;
-    return second;
+    return one ? second : Real(second + of_x_1_);
   }
 
   Masses& masses_;
   const bool centred_, sums_powers_;
   CemPace<Real> pace_;
   CemStep<Real> of_x_{};      // for a list, by (M17.10)
+  Real of_x_1_ = 0;           // with components, by (M18.6)
   Moment before_{}, now_{};   // x before and after the last step
   Real origin_ = 0;           // time of step 0
   std::int64_t number_ = 0;   // of now_
