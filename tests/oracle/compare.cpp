@@ -82,19 +82,21 @@ Answer answer_of(const Run& run) {
   return answer;
 }
 
-// The terms of the energy balance, each with its name.
+// The terms of the energy balance, each with its name. Those of friction, weight and drag are of scenes that
+// have any of them.
 struct Term {
   std::string name;
   Quad value;
   bool initial = false;
 };
 template <class Each>
-void add_energy(std::vector<Term>& terms, const std::string& when, const Each& now) {
+void add_energy(std::vector<Term>& terms, const std::string& when, const Each& now, const Setting& setting) {
   const bool initial = when == "initial";
   terms.push_back({when + " kinetic energy", now.kinetic, initial});
   terms.push_back({when + " spring energy", now.spring, initial});
   terms.push_back({when + " wall energy", now.wall, initial});
   terms.push_back({when + " paper's energy", now.paper, initial});
+  if (has_components(setting.scene())) terms.push_back({when + " energy of weight", now.weight, initial});
 }
 void add_losses(std::vector<Term>& terms, const Setting& setting, Quad impacts, Quad contacts) {
   if (setting.accuracy.by_steps) {
@@ -105,38 +107,53 @@ void add_losses(std::vector<Term>& terms, const Setting& setting, Quad impacts, 
     terms.push_back({"contact loss", contacts});
   }
 }
-void add_damper(std::vector<Term>& terms, std::size_t number, Quad initial, Quad final, Quad loss) {
+template <class Each>
+void add_resistance(std::vector<Term>& terms, const std::string& whose, const Each& its,
+                    const Setting& setting) {
+  if (!has_components(setting.scene())) return;
+  terms.push_back({whose + "friction loss", its.friction_loss});
+  terms.push_back({whose + "drag loss", its.drag_loss});
+}
+template <class Each>
+void add_damper(std::vector<Term>& terms, std::size_t number, Quad initial, Quad final, Quad loss,
+                const Each& its, const Setting& setting) {
   const std::string which = "damper " + std::to_string(number);
+  add_resistance(terms, which + ' ', its, setting);
   terms.push_back({which + " initial energy", initial, true});
   terms.push_back({which + " final energy", final});
   terms.push_back({which + " loss", loss});
 }
 std::vector<Term> terms_of(const Answer& answer, const Setting& setting) {
   std::vector<Term> terms{{"viscous work", answer.viscous_work}, {"forcing work", answer.forcing_work}};
-  add_energy(terms, "initial", answer.initial);
-  add_energy(terms, "final", answer.final);
-  add_losses(terms, setting, answer.impact_loss() + answer.chatter_loss(), answer.contact_loss());
+  add_energy(terms, "initial", answer.initial, setting);
+  add_energy(terms, "final", answer.final, setting);
+  const DamperEnergy all{.friction_loss = answer.sum(&DamperEnergy::friction_loss),
+                         .drag_loss = answer.sum(&DamperEnergy::drag_loss)};
+  add_resistance(terms, "", all, setting);
+  add_losses(terms, setting, answer.impact_loss() + answer.sum(&DamperEnergy::chatter_loss),
+             answer.sum(&DamperEnergy::contact_loss));
   for (std::size_t n = 0; n < answer.dampers.size(); ++n) {
     const DamperEnergy& its = answer.dampers[n];
     Quad loss = its.contact_loss + its.chatter_loss;
     for (const Impact& each : answer.impacts)
       if (each.damper == int(n)) loss += each.loss;
-    add_damper(terms, n, its.initial, its.final, loss);
+    add_damper(terms, n, its.initial, its.final, loss, its, setting);
   }
   return terms;
 }
 // Of a run without those of its dampers, if it has none.
 std::vector<Term> terms_of(const EnergyBalance& energy, const Setting& setting) {
   std::vector<Term> terms{{"viscous work", energy.viscous_work}, {"forcing work", energy.forcing_work}};
-  add_energy(terms, "initial", energy.initial);
-  add_energy(terms, "final", energy.final);
+  add_energy(terms, "initial", energy.initial, setting);
+  add_energy(terms, "final", energy.final, setting);
+  add_resistance(terms, "", energy, setting);
   Quad impacts = energy.bounce_down_loss;
   for (const double each : energy.impact_loss) impacts += each;
   add_losses(terms, setting, impacts, energy.contact_loss);
   for (std::size_t n = 0; n < energy.dampers.size(); ++n) {
     const auto& its = energy.dampers[n];
     add_damper(terms, n, its.initial_kinetic, its.final_kinetic,
-               Quad(its.impact_loss) + its.contact_loss + its.bounce_down_loss);
+               Quad(its.impact_loss) + its.contact_loss + its.bounce_down_loss, its, setting);
   }
   return terms;
 }
@@ -909,7 +926,7 @@ void judge_energy(const Run& run, const Prediction& prediction, const Walk& both
   }
   judge.number("residual", balance.residual, 0, rounding * 10);
   if (setting.question.walls != Walls::rigid || both.mismatch || setting.nested) return;
-  Quad jumped = answer.chatter_loss(), grown = floor;
+  Quad jumped = answer.sum(&DamperEnergy::chatter_loss), grown = floor;
   for (const std::size_t i : both.skipped) jumped += answer.impacts[i].loss;
   for (std::size_t i = 0; i < mine.size(); ++i)
     if (mine[i].name == "loss of all impacts") grown += prediction.terms[i];
@@ -1090,6 +1107,7 @@ Setting setting_of(const Scene& scene, const Engine& engine, const Comparing& ho
   question.scene = scene;
   question.walls = std::holds_alternative<Restitution>(engine) ? Walls::rigid : Walls::compliant;
   if (const Exact* const exact = std::get_if<Exact>(&engine)) question.calibration = exact->calibration;
+  if (has_components(scene)) question.most_steps = 2'000;  // at rest on a wall, which pushes
   if (how.as_list || scene.dampers.size() > 1) {
     question.most_impacts = 8000;
     question.most_steps = question.walls == Walls::rigid ? 32'000 : 5'000;
@@ -1178,8 +1196,14 @@ Run run_of_oracle(const Scene& scene, Walls walls, Fault fault, int samples) {
   energy.dampers.resize(count);
   for (std::size_t n = 0; n < count; ++n) {
     const DamperEnergy& its = answer.dampers[n];
-    energy.dampers[n] = {double(its.initial),     double(its.final), 0, double(its.contact_loss), 0,
-                         double(its.chatter_loss)};
+    energy.dampers[n] = {double(its.initial),
+                         double(its.final),
+                         0,
+                         double(its.contact_loss),
+                         0,
+                         double(its.chatter_loss),
+                         double(its.friction_loss),
+                         double(its.drag_loss)};
   }
   HalfCycles& rows = *run.half_cycles;
   rows.dampers.resize(count);
@@ -1230,12 +1254,14 @@ Run run_of_oracle(const Scene& scene, Walls walls, Fault fault, int samples) {
     }
   }
   const auto rounded = [](const Energy& now) {
-    return impact_damper::Energy{double(now.kinetic), double(now.spring), double(now.wall),
-                                 double(now.paper)};
+    return impact_damper::Energy{double(now.kinetic), double(now.spring), double(now.wall), double(now.paper),
+                                 double(now.weight)};
   };
   energy.initial = rounded(answer.initial), energy.final = rounded(answer.final);
-  energy.contact_loss = double(answer.contact_loss());
-  energy.bounce_down_loss = double(answer.chatter_loss());
+  energy.contact_loss = double(answer.sum(&DamperEnergy::contact_loss));
+  energy.bounce_down_loss = double(answer.sum(&DamperEnergy::chatter_loss));
+  energy.friction_loss = double(answer.sum(&DamperEnergy::friction_loss));
+  energy.drag_loss = double(answer.sum(&DamperEnergy::drag_loss));
   energy.viscous_work = double(answer.viscous_work), energy.forcing_work = double(answer.forcing_work);
   return run;
 }

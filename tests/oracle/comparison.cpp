@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "compare.hpp"
 #include "scenes.hpp"
@@ -85,4 +86,46 @@ TEST_CASE(
                     with(Walls::compliant, {Fault::none, Fault::clearance_ignored, Fault::wall_force_left_out,
                                             Fault::wall_damper_of_first, Fault::stiffness_of_first,
                                             Fault::own_contact_only, Fault::let_go_by_force})));
+}
+
+TEST_CASE(
+    "the comparison finds no difference of the oracle's own run, and every fault in friction, weight and "
+    "drag") {
+  for (const Walls walls : {Walls::rigid, Walls::compliant}) {
+    const bool rigid = walls == Walls::rigid;
+    std::vector<Scene> scenes;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+      const bool round = seed % 2 == 0;
+      const Scene plain = rigid ? (round ? round_list(seed) : random_list(seed))
+                                : (round ? round_compliant_list(seed) : random_compliant_list(seed));
+      scenes.push_back(with_components(plain, seed, round));
+      scenes.back().until_time = std::min(*plain.until_time, rigid ? 6.0 : 2.0);
+    }
+    std::vector<Program> programs = with(walls, {Fault::none});
+    const auto add = [&](const std::function<void(Scene&)>& before, const std::function<void(Run&)>& after) {
+      programs.push_back([=](const Scene& scene) {
+        Scene other = scene;
+        if (before) before(other);
+        Run run = run_of_oracle(other, walls);
+        if (after) after(run);
+        run.scene = scene;
+        return run;
+      });
+    };
+    const auto nudge = [](double& number) { number *= 1 + 1e-6; };
+    const auto add_of_each = [&](const std::function<void(SceneDamper&)>& alter) {
+      add([=](Scene& scene) { std::ranges::for_each(scene.dampers, alter); }, {});
+    };
+    add([=](Scene& scene) { nudge(scene.weight); }, {});
+    add_of_each([=](SceneDamper& its) { nudge(its.friction); });
+    add_of_each([=](SceneDamper& its) { nudge(its.drag); });
+    add_of_each([](SceneDamper& its) { its.static_friction = 0; });
+    add({}, [=](Run& run) { nudge(run.energy->friction_loss); });
+    add({}, [=](Run& run) { nudge(run.energy->drag_loss); });
+    add({}, [=](Run& run) { nudge(run.energy->initial.weight); });
+    add({}, [=](Run& run) { nudge(run.energy->final.weight); });
+    add({}, [=](Run& run) { nudge(run.energy->dampers.back().friction_loss); });
+    add({}, [=](Run& run) { nudge(run.energy->dampers.back().drag_loss); });
+    check_found(found(scenes, rigid ? Engine(Restitution{}) : Engine(Exact{}), 3000, programs));
+  }
 }

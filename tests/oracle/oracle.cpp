@@ -42,10 +42,10 @@ struct SlowMotion {
 
 struct Damper {
   Quad nu, e, clearance;
-  int side = 1;       // from which wall d is counted: +1 left, -1 right
-  Quad d = 0, s = 0;  // distance from it, velocity away from it
-  bool stuck = false;
-  std::size_t contact = 0;              // while stuck or in contact: its own
+  int side = 1;                         // from which wall d is counted: +1 left, -1 right
+  Quad d = 0, s = 0;                    // distance from it, velocity away from it
+  bool stuck = false;                   // at rest in the cavity: pressed to a rigid wall or held by friction
+  std::optional<std::size_t> contact;   // while stuck on a rigid wall or in contact: its own
   Polynomial path;                      // d in this step
   std::vector<std::size_t> chattering;  // impacts on this wall since it was met or left
   Quad rest = 0;  // how long the rest of the chattering takes that has been taken at once
@@ -54,8 +54,20 @@ struct Damper {
   bool pushes = true;  // the primary mass, too
   Quad stiffness = 0, damping = 0;
   std::optional<std::size_t> impact;  // that began the contact
-  Polynomial push;                    // h^2 (damping s + stiffness d) in this step
+  Polynomial push;                    // h^2 resistance in this step
   SlowMotion slow;
+  Quad friction = 0, static_friction = 0, drag = 0;
+  int slides = 0;        // where s is zero: the sign of the speed that follows
+  bool lets_go = false;  // what holds it has just been exceeded
+  int direction() const { return s != 0 ? sign_of(s) : slides; }
+  bool is_resisted() const { return in_contact || friction != 0 || drag != 0; }
+  // The force on it towards the wall, divided by nu, that its motion in the cavity causes.
+  Quad resistance(Quad speed, Quad place, int sliding) const {
+    Quad sum = 0;
+    if (friction != 0 || drag != 0) sum = friction * sliding + drag * speed;
+    if (in_contact) sum += damping * speed + stiffness * place;
+    return sum;
+  }
   Wall wall() const { return side > 0 ? Wall::left : Wall::right; }
   bool rests() const { return d == 0 && s == 0; }
 };
@@ -90,7 +102,9 @@ Quad first_root(const Polynomial& p, int direction) {  // 2: none
 class Integrator {
  public:
   explicit Integrator(const Question& question)
-      : question_(question), compliant_(question.walls == Walls::compliant) {}
+      : question_(question),
+        compliant_(question.walls == Walls::compliant),
+        components_(has_components(question.scene)) {}
 
   Answer run() {
     prepare();
@@ -131,6 +145,7 @@ class Integrator {
     omega_ = noisy(scene.force_frequency, 3);
     x_ = noisy(scene.x0, 4);
     v_ = noisy(scene.v0, 5);
+    weight_ = noisy(scene.weight, 12);
     until_ = scene.until_time ? Quad(*scene.until_time) : Quad(1e30L);
     for (const impact_damper::SceneDamper& each : scene.dampers) {
       Damper damper;
@@ -154,6 +169,9 @@ class Integrator {
       }
       if (question_.calibration == Calibration::two_body) ratio /= sqrtq(1 + damper.nu);
       damper.damping = 2 * sqrtq(damper.stiffness) * ratio;
+      damper.friction = noisy(each.friction, 13);  // one kind, so that equal ones remain equal
+      damper.static_friction = noisy(std::max(each.friction, each.static_friction), 13);
+      damper.drag = noisy(each.drag, 14);
       damper.pushes = question_.fault == Fault::wall_force_left_out
                           ? dampers_.size() + 1 < scene.dampers.size()
                           : question_.fault != Fault::own_contact_only || dampers_.empty();
@@ -166,11 +184,12 @@ class Integrator {
   static Quad square(Quad x) { return x * x; }
   Quad kinetic(const Damper& each) const { return each.nu * square(v_ + each.side * each.s) / 2; }
   Energy energy() const {
-    Energy now{v_ * v_ / 2, x_ * x_ / 2, 0, (v_ * v_ + x_ * x_) / 2};
+    Energy now{v_ * v_ / 2, x_ * x_ / 2, 0, (v_ * v_ + x_ * x_) / 2, 0};
     for (const Damper& each : dampers_) {
       now.kinetic += kinetic(each);
       now.paper += each.nu * (v_ * v_ + each.s * each.s) / 2;
       if (each.in_contact) now.wall += each.nu * each.stiffness * each.d * each.d / 2;
+      now.weight += each.nu * weight_ * (x_ + (each.side > 0 ? each.d : each.clearance - each.d));
     }
     return now;
   }
@@ -186,20 +205,26 @@ class Integrator {
   Quad force() const {
     Quad sum = (f0_ != 0 ? f0_ * sinq(omega_ * t_) : Quad(0)) - x_ - 2 * zeta_ * v_;
     for (const Damper& each : dampers_)
-      if (each.in_contact) sum += each.side * each.nu * (each.damping * each.s + each.stiffness * each.d);
-    return sum;
+      if (!each.stuck) sum += each.side * each.nu * each.resistance(each.s, each.d, each.direction());
+    return sum - weight_ * (joined_mass() - 1);
   }
   // A speed or a force that is rounding of what else moves.
-  Quad rounded() const { return (magnitude(v_) + magnitude(x_) + magnitude(f0_)) * zero_within_rounding; }
+  Quad rounded() const {
+    Quad sum = magnitude(v_) + magnitude(x_) + magnitude(f0_) + weight_;
+    for (const Damper& each : dampers_) sum += each.static_friction;
+    return sum * zero_within_rounding;
+  }
 
   // An upper bound of how fast the state can change, in the norm max(|x|, |v|, |f|, |f'|/omega, rate |d|,
   // |s|) with `rate` that of the undamped contacts.
   Quad rate() const {
     Quad most = 0, own = 0, sum = 0, damping = 0;
     for (const Damper& each : dampers_) {
-      if (!each.in_contact || slow_) continue;
-      most = std::max(most, each.stiffness), own = std::max(own, each.damping);
-      sum += each.nu * each.stiffness, damping += each.nu * each.damping;
+      if (each.stuck || !each.is_resisted() || slow_) continue;
+      const bool pressed = each.in_contact;
+      const Quad by_speed = each.drag + (pressed ? each.damping : 0), by_place = pressed ? each.stiffness : 0;
+      most = std::max(most, by_place), own = std::max(own, by_speed);
+      sum += each.nu * by_place, damping += each.nu * by_speed;
     }
     const Quad bound = (slow_ ? 3 : 2) + 2 * zeta_ + sqrtq(most + sum) + own + damping;
     return f0_ != 0 ? std::max(bound, omega_) : bound;
@@ -226,25 +251,28 @@ class Integrator {
       for (Polynomial* one : {&each.path, &each.push}) one->degree = order, one->at.fill(0);
       each.path.at[0] = each.d, each.path.at[1] = each.s * h;
     }
-    const Quad mass = joined_mass(), by_mass = h * h / mass, drag = 2 * zeta_ * h / mass;
+    const Quad mass = joined_mass(), by_mass = h * h / mass, viscous = 2 * zeta_ * h / mass;
+    const Quad part = 1 / mass;
     for (int n = 0; n <= order; ++n) {
-      a[n] = by_mass * (f[n] - x[n]) - drag * ((n + 1) * x[n + 1]);
+      a[n] = by_mass * (f[n] - x[n]) - viscous * ((n + 1) * x[n + 1]);
+      if (n == 0) a[0] -= by_mass * weight_ * (mass - 1);
       for (Damper& each : dampers_) {
-        if (!each.in_contact) continue;
+        if (each.stuck || !each.is_resisted()) continue;
         auto& d = each.path.at;
         Quad speed = (n + 1) * d[n + 1] / h;
         if (slow_) {
           const Row state{x[n], (n + 1) * x[n + 1] / h, f[n], (n + 1) * f[n + 1] / h};
           d[n] = product(each.slow.place, state), speed = product(each.slow.speed, state);
         }
-        each.push.at[n] = h * h * (each.damping * speed + each.stiffness * d[n]);
-        if (each.pushes) a[n] += each.side * each.nu * each.push.at[n];
+        each.push.at[n] = h * h * each.resistance(speed, d[n], n == 0 ? each.direction() : 0);
+        if (each.pushes) a[n] += each.side * each.nu * part * each.push.at[n];
       }
       x[n + 2] = a[n] / ((n + 1) * (n + 2));
       v[n] = (n + 1) * x[n + 1] / h;
       for (Damper& each : dampers_)
         if (!each.stuck && !(slow_ && each.in_contact))
-          each.path.at[n + 2] = -(each.side * a[n] + each.push.at[n]) / ((n + 1) * (n + 2));
+          each.path.at[n + 2] =
+              -(each.side * (n == 0 ? a[0] + h * h * weight_ : a[n]) + each.push.at[n]) / ((n + 1) * (n + 2));
     }
     // Where the motion begins at a wall, that is exact, and its leading coefficients are zero or more than
     // rounding.
@@ -320,7 +348,7 @@ class Integrator {
   // The fast modes of all contacts have died out within rounding of the force: go on without them.
   void drop_fast_modes() {
     if (slow_) return follow_slow_motions();
-    if (question_.fault != Fault::none) return;
+    if (question_.fault != Fault::none || components_) return;
     std::vector<int> sides;
     Quad mass = 1, least = -1;  // least: of how fast fast modes die out
     for (const Damper& each : dampers_) {
@@ -375,14 +403,15 @@ class Integrator {
     open_contact(each);
   }
   void leave(Damper& each, Quad end_speed) {
-    if (each.stuck || each.in_contact) {
-      answer_.contacts[each.contact].end = t_;
-      answer_.contacts[each.contact].end_speed = end_speed;
+    if (each.contact) {
+      answer_.contacts[*each.contact].end = t_;
+      answer_.contacts[*each.contact].end_speed = end_speed;
       each.chattering.clear();
       slow_ = false;
       changed_ = t_;
     }
     each.stuck = each.in_contact = false;
+    each.contact.reset();
     each.impact.reset();
     each.rest = 0;
   }
@@ -391,35 +420,70 @@ class Integrator {
     each.chattering.clear();
   }
 
-  // Those at rest on a wall: do they stick? The sign of x'' from now on does not depend on how many do.
+  // A wall keeps a mass at rest from moving one way.
+  bool at_rigid_wall(const Damper& each) const { return !compliant_ && each.d == 0; }
+  // h^2 times the force beyond static friction that would make a mass at rest slide in this direction: what
+  // accelerates it relative to the cavity is -(x'' + gamma) and its wall.
+  Polynomial excess(const Damper& each, int direction) const {
+    Polynomial p = pa_;
+    for (int n = 0; n <= p.degree; ++n) p.at[n] *= -each.side * direction;
+    const Quad wall = each.in_contact ? each.stiffness * each.d : Quad(0);
+    p.at[0] -= h_ * h_ * (direction * (each.side * weight_ + wall) + each.static_friction);
+    return p;
+  }
+  // Of those that are to stay at rest the one that does it least; none if all do. Whether the rest do depends
+  // on it, as it no longer is joined to the primary mass.
+  Damper* first_to_slide() {
+    const Quad acceleration = force() / joined_mass() + weight_, nearly = Quad(1e14L) * rounded();
+    Damper* first = nullptr;
+    Quad most = nearly;
+    bool undecided = false;
+    for (Damper& each : dampers_) {
+      if (!each.stuck) continue;
+      const Quad wall = each.in_contact ? each.stiffness * each.d : Quad(0);
+      const Quad pull = -(each.side * acceleration + wall);
+      const Quad beyond = (at_rigid_wall(each) ? pull : magnitude(pull)) - each.static_friction;
+      if (beyond > most) first = &each, most = beyond, each.slides = sign_of(pull);
+      undecided = undecided || beyond >= -nearly;
+    }
+    if (first || !undecided) return first;
+    expand(step_by_rate / rate());  // what follows decides
+    for (Damper& each : dampers_)
+      for (const int direction : {+1, -1}) {
+        if (!each.stuck || (direction < 0 && at_rigid_wall(each))) continue;
+        const int sign = leading_sign(excess(each, direction));
+        each.slides = direction;
+        if (sign > 0 || (sign == 0 && each.static_friction == 0)) return &each;
+      }
+    return nullptr;
+  }
+  // Those at rest: do they stay so, on a rigid wall or held by friction?
   void decide() {
     for (Damper& each : dampers_)  // a speed that is rounding of what goes on: what follows decides
       if (each.d == 0 && !each.in_contact && magnitude(each.s) <= rounded()) each.s = 0;
-    if (std::none_of(dampers_.begin(), dampers_.end(), [](const Damper& each) { return each.rests(); }))
-      return;
+    for (Damper& each : dampers_)
+      each.stuck = each.s == 0 && !std::exchange(each.lets_go, false) &&
+                   (each.static_friction > 0 || at_rigid_wall(each));
+    while (Damper* const first = first_to_slide()) first->stuck = false;
+    const auto is_free = [](const Damper& each) { return each.rests() && !each.in_contact && !each.stuck; };
     if (compliant_) {
+      if (std::none_of(dampers_.begin(), dampers_.end(), is_free)) return;
       expand(step_by_rate / rate());
       for (Damper& each : dampers_)
-        if (each.rests() && !each.in_contact && leading_sign(each.path) < 0) touch(each);
+        if (is_free(each) && leading_sign(each.path) < 0) touch(each);
       return;
-    }
-    const Quad now = force();
-    int push = sign_of(now);
-    if (magnitude(now) <= Quad(1e14L) * rounded()) {
-      expand(step_by_rate / rate());
-      push = leading_sign(pa_);
     }
     for (Damper& each : dampers_) {
       if (!each.rests()) continue;
-      const bool sticks = push == each.side;
-      if (sticks && !each.stuck) {
-        // A chattering is complete, too, once its bounces are slower than rounding.
+      if (each.stuck && !each.contact) {
+        // A chattering is complete, too, once its bounces are slower than rounding; friction has slowed them
+        // since the last impact.
         if (!each.chattering.empty() &&
-            (each.rest > 0 ||
+            (each.rest > 0 || components_ ||
              each.e * magnitude(answer_.impacts[each.chattering.back()].relative_velocity) <= 2 * rounded()))
           close_chattering(each);
         open_contact(each);
-      } else if (!sticks) {
+      } else if (!each.stuck) {
         leave(each, 0);
       }
     }
@@ -429,14 +493,15 @@ class Integrator {
     if (++answer_.steps > question_.most_steps ||
         std::int64_t(answer_.impacts.size()) > question_.most_impacts)
       return stop(Stop::effort);
-    if (!released_) decide();
-    released_ = false;
+    decide();
     if (compliant_) drop_fast_modes();
     Quad h = step_by_rate / rate();
     const Quad acceleration = force() / joined_mass();
     for (const Damper& each : dampers_) {  // what will soon be at a wall needs no long step
       if (each.stuck || each.in_contact) continue;
-      const double push = double(each.side * acceleration), speed = double(each.s);
+      const double push = double(each.side * (acceleration + weight_) +
+                                 each.resistance(each.s, each.d, each.direction())),
+                   speed = double(each.s);
       const double way = double(push > 0 ? each.d : each.clearance - each.d),
                    towards = push > 0 ? -speed : speed;
       const double time =
@@ -448,14 +513,28 @@ class Integrator {
     if (last) h = until_ - t_;
     expand(h);
 
-    std::vector<Quad> near(dampers_.size(), 2), far(dampers_.size(), 2);
-    Quad end = 1, release = 2;
-    int side = 0;
+    // When each meets its wall or leaves it, meets the other one, comes to rest, and begins to slide.
+    std::vector<Quad> near(dampers_.size(), 2), far = near, halt = near, release = near;
+    Quad end = 1;
     for (std::size_t i = 0; i < dampers_.size(); ++i) {
-      const Damper& each = dampers_[i];
+      Damper& each = dampers_[i];
       if (each.stuck) {
-        side = each.side;
+        for (const int direction : {+1, -1}) {
+          if (direction < 0 && at_rigid_wall(each)) continue;
+          Polynomial beyond = excess(each, direction);
+          clear_leading(beyond);
+          if (question_.fault == Fault::released_apart) beyond.at[0] += h * h * Quad(1e-6L);
+          const Quad exceeded = first_root(beyond, +1);
+          if (exceeded < release[i]) release[i] = exceeded, each.slides = direction;
+        }
+        end = std::min(end, release[i]);
         continue;
+      }
+      if (each.static_friction > 0) {
+        Polynomial speed = derivative(each.path);
+        if (each.s == 0) clear_leading(speed);
+        halt[i] = first_root(speed, -each.direction());
+        end = std::min(end, halt[i]);
       }
       near[i] = first_root(each.path, each.in_contact ? +1 : -1);
       if (each.in_contact) {
@@ -470,31 +549,39 @@ class Integrator {
       far[i] = first_root(gap, +1);
       end = std::min({end, near[i], far[i]});
     }
-    if (side != 0) {
-      Polynomial push = pa_;
-      clear_leading(push);
-      if (question_.fault == Fault::released_apart) push.at[0] -= side * h * h * Quad(1e-6L);
-      release = first_root(push, -side);
-      end = std::min(end, release);
-    }
-    const Quad together = end + one_instant * (1 + t_) / h;
+    const Quad together = std::min(end + one_instant * (1 + t_) / h, Quad(1));  // 2: none
     end = observe(end);
     work(end);
     t_ = last && end == 1 ? until_ : t_ + h * end;
     x_ = px_(end), v_ = pv_(end);
-    bool met = false;
+    const Quad mass = joined_mass();
+    bool met = false, event = false;
     std::vector<bool> meets(dampers_.size(), false);  // a compliant wall
     for (std::size_t i = 0; i < dampers_.size(); ++i) {
       Damper& each = dampers_[i];
-      if (each.stuck) continue;
+      if (each.stuck) {
+        if (done_ || release[i] > together) continue;
+        event = each.lets_go = true;
+        if (at_rigid_wall(each)) leave(each, mass * magnitude(derivative(pa_)(end)) / (h * h * h));
+        continue;
+      }
       each.d = each.path(end);
       each.s = speed_of(each, end);
       if (done_) continue;
+      if (halt[i] <= together) {  // on a wall, if within rounding of it
+        event = true;
+        each.s = 0;
+        const auto is_zero = [](Quad value, Quad size) {
+          return magnitude(value) <= size * zero_within_rounding;
+        };
+        if (is_zero(each.d, each.path.sum_of_magnitudes())) near[i] = end;
+        if (is_zero(each.clearance - each.d, each.clearance)) far[i] = end;
+      }
       if (each.in_contact) {
         if (near[i] > together) continue;
         each.d = 0, each.s = std::max(each.s, Quad(0));
         leave(each, each.s);
-        released_ = true;
+        event = true;
         continue;
       }
       if (near[i] <= together || far[i] <= together) {
@@ -512,21 +599,14 @@ class Integrator {
       }
     }
     if (done_) return;
-    if (release <= together) {
-      const Quad end_speed = joined_mass() * magnitude(derivative(pa_)(end)) / (h * h * h);
-      for (Damper& each : dampers_) leave(each, end_speed);
-      released_ = true;
-    }
-    const bool event = met || released_;
     // Not within a contact: noise would keep its fast mode alive for ever.
-    if (event || (alone() && (!dampers_[0].in_contact || slow_))) perturb();
+    if (met || event || (alone() && (!dampers_[0].in_contact || slow_))) perturb();
     if (compliant_) {
       for (std::size_t i = 0; i < dampers_.size(); ++i)
         if (meets[i]) touch(dampers_[i]);
-      released_ = false;
     } else if (met) {
       impact();
-      released_ = false;
+      for (Damper& each : dampers_) each.lets_go = false;
     }
   }
   void stop(Stop why) {
@@ -601,9 +681,10 @@ class Integrator {
       }
     const Quad jump = driven / mass;
     v_ += jump;
-    // What is not at a wall sees the jump, too: its velocity relative to the cavity.
+    // What is not at a wall sees the jump, too: its velocity relative to the cavity. No friction holds it.
     for (Damper& each : dampers_)
-      if (std::find(all.begin(), all.end(), &each) == all.end() && !each.stuck) each.s -= each.side * jump;
+      if (std::find(all.begin(), all.end(), &each) == all.end() && !(each.stuck && each.d == 0))
+        each.s -= each.side * jump;
     for (Damper* each : all) {
       const Quad before = each->s, e = e_of(*each);
       const bool active = impulse(*each, middle) > 0;
@@ -627,8 +708,10 @@ class Integrator {
   // Under the relative acceleration -a the rest of a chattering lasts 2 s / (a (1 - e)), but for the part by
   // which a changes in it: by itself and, through the damper, by the impacts. It is taken once that is beyond
   // quadruple rounding, but impacts that an engine may list, however little they matter, are listed here,
-  // too.
+  // too. With friction, weight or drag nothing is taken at once: bounces end where they are slower than
+  // rounding (decide()).
   bool chattering_ends(Damper& each, Quad e) {
+    if (components_) return false;
     const Quad a = each.side * force() / joined_mass();
     if (!(each.s > 0 && a > 0 && e < 1)) return false;
     if (question_.fault == Fault::chattering_cut_short)
@@ -663,11 +746,15 @@ class Integrator {
 
   void work(Quad end) {
     for (Damper& each : dampers_) {
-      if (!each.in_contact || each.damping == 0) continue;
+      const Quad damping = each.in_contact ? each.damping : Quad(0);
+      DamperEnergy& its = answer_.dampers[number_of(each)];
+      its.friction_loss += each.nu * each.friction * magnitude(each.path(end) - each.path.at[0]);
+      if (damping == 0 && each.drag == 0) continue;
       const Polynomial slope = derivative(each.path);
-      const Quad loss = each.nu * each.damping * integral_of_product(slope, slope, end) / h_;
-      (each.impact ? answer_.impacts[*each.impact].loss : answer_.dampers[number_of(each)].contact_loss) +=
-          loss;
+      const Quad square = integral_of_product(slope, slope, end);
+      its.drag_loss += each.nu * each.drag * square / h_;
+      (each.impact ? answer_.impacts[*each.impact].loss : its.contact_loss) +=
+          each.nu * damping * square / h_;
     }
     if (zeta_ != 0) answer_.viscous_work += 2 * zeta_ * h_ * integral_of_product(pv_, pv_, end);
     if (f0_ == 0) return;
@@ -728,8 +815,8 @@ class Integrator {
   }
 
   const Question& question_;
-  bool compliant_, done_ = false;
-  Quad zeta_ = 0, f0_ = 0, omega_ = 0, until_ = 0;
+  bool compliant_, components_, done_ = false;
+  Quad weight_ = 0, zeta_ = 0, f0_ = 0, omega_ = 0, until_ = 0;
   Quad t_ = 0, x_ = 0, v_ = 0;
   std::vector<Damper> dampers_;
   bool slow_ = false;  // all contacts are without their fast modes
@@ -738,7 +825,6 @@ class Integrator {
   std::vector<int> sides_;  // of the contacts that slow motions were last looked for
   Quad h_ = 0;
   Polynomial px_, pv_, pf_, pa_;  // of the step: x, x', the force, h^2 x''
-  bool released_ = false;
   int side_of_x_ = 0;
   Quad peak_ = 0, peak_time_ = 0;
   std::int64_t events_ = 0;
@@ -754,15 +840,14 @@ Quad Answer::impact_loss() const {
   for (const Impact& each : impacts) sum += each.loss;
   return sum;
 }
-Quad Answer::contact_loss() const {
+Quad Answer::sum(Quad DamperEnergy::*term) const {
   Quad sum = 0;
-  for (const DamperEnergy& each : dampers) sum += each.contact_loss;
+  for (const DamperEnergy& each : dampers) sum += each.*term;
   return sum;
 }
-Quad Answer::chatter_loss() const {
-  Quad sum = 0;
-  for (const DamperEnergy& each : dampers) sum += each.chatter_loss;
-  return sum;
+Quad Answer::losses() const {
+  return impact_loss() + sum(&DamperEnergy::contact_loss) + sum(&DamperEnergy::chatter_loss) +
+         sum(&DamperEnergy::friction_loss) + sum(&DamperEnergy::drag_loss);
 }
 Quad Answer::residual() const {
   return initial.total() + forcing_work - final.total() - losses() - viscous_work;
@@ -805,8 +890,9 @@ std::string lines_of(const Answer& answer) {
   all += text(answer.end_time) + "  end (" + stops[int(answer.stop)] + "), steps " +
          std::to_string(answer.steps) + "\n";
   all += "energy: initial " + text(answer.initial.total()) + " forcing " + text(answer.forcing_work) +
-         " final " + text(answer.final.total()) + " viscous " + text(answer.viscous_work) + " impacts " +
-         text(answer.losses()) + " residual " + text(answer.residual(), 3) + "\n";
+         " final " + text(answer.final.total()) + " viscous " + text(answer.viscous_work) +
+         " impacts, friction, drag " + text(answer.losses()) + " residual " + text(answer.residual(), 3) +
+         "\n";
   return all;
 }
 

@@ -16,6 +16,13 @@
 // Between compliant walls a damper is in contact from when it meets a wall until it is back there, and the
 // wall then pushes it and the primary mass apart; those at rest on a wall are in contact if they move into it
 // at once.
+//
+// Friction, weight and drag: y'' = -x'' - gamma - R, and nu R acts on the primary mass, where R is the wall's
+// force and phi sgn(y') + d y'. The sign of y' is that of the step: y' = 0 is an event, where there is
+// friction. Then it holds the mass, which moves with the primary mass, while |x'' + gamma + wall force| <=
+// phi_s. Of several at rest all hold at first; the one that exceeds this most slides, which changes x'', and
+// so on. An impulse moves the cavity under a mass that is held away from its walls. Bounces end where they
+// are slower than 1e-29 of what else moves: none is left out before.
 #pragma once
 
 #include <cstdint>
@@ -93,14 +100,15 @@ struct Sample {
 };
 
 struct Energy {
-  Quad kinetic, spring, wall, paper;
-  Quad total() const { return kinetic + spring + wall; }
+  Quad kinetic, spring, wall, paper, weight;
+  Quad total() const { return kinetic + spring + wall + weight; }
 };
 
 struct DamperEnergy {
   Quad initial, final;    // kinetic
   Quad contact_loss = 0;  // compliant walls: in contacts that no impact began
   Quad chatter_loss = 0;  // rigid walls: in the impacts beyond the last one listed of a complete chattering
+  Quad friction_loss = 0, drag_loss = 0;
 };
 
 enum class Stop { time, amplitude, effort };
@@ -120,10 +128,9 @@ struct Answer {
   std::int64_t steps = 0;
 
   bool complete() const { return stop != Stop::effort; }
-  Quad impact_loss() const;   // of all impacts
-  Quad contact_loss() const;  // of all dampers
-  Quad chatter_loss() const;
-  Quad losses() const { return impact_loss() + contact_loss() + chatter_loss(); }
+  Quad impact_loss() const;                  // of all impacts
+  Quad sum(Quad DamperEnergy::*term) const;  // of all dampers
+  Quad losses() const;
   Quad residual() const;  // of the energy balance
 };
 

@@ -339,6 +339,29 @@ Scene aimed_compliant_list(std::uint64_t seed) {
   return scene;
 }
 
+Scene with_components(Scene scene, std::uint64_t seed, bool round) {
+  Random random(seed ^ (std::uint64_t(1) << 41));
+  const auto part = [&](double least, double most) {
+    return round ? one_of(random, {0, 0.25, 0.5, 1}) : random.log_uniform(least, most);
+  };
+  const auto or_none = [&](double value) { return random.chance(0.4) ? 0 : value; };
+  if (const std::size_t count = scene.dampers.size(); count > 1)
+    scene.dampers.resize(std::min(count, std::size_t(4)));
+  scene.weight = part(0.01, 2);
+  scene.weight = or_none(scene.weight);
+  for (SceneDamper& each : scene.dampers) {
+    each.friction = part(0.003, 1);
+    // As large as |x''| at the release, of this mass alone.
+    if (round && random.chance(0.3)) each.friction = std::fabs(scene.x0) / (1 + each.mass_ratio);
+    each.friction = or_none(each.friction);
+    each.drag = part(0.01, 1);
+    each.drag = or_none(each.drag);
+    const double ratio = round ? one_of(random, {1, 1.5, 2}) : random.uniform(1, 2);
+    each.static_friction = or_none(ratio * each.friction);
+  }
+  return scene;
+}
+
 std::string options_of(const Scene& scene) {
   std::string options;
   const Scene defaults;

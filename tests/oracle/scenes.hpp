@@ -30,6 +30,9 @@ impact_damper::Scene round_compliant_list(std::uint64_t seed);
 impact_damper::Scene aimed_list(std::uint64_t seed);
 impact_damper::Scene aimed_compliant_list(std::uint64_t seed);
 
+// The scene, of up to four dampers, with friction phi and phi_s, drag and weight, each absent in two of five.
+impact_damper::Scene with_components(impact_damper::Scene scene, std::uint64_t seed, bool round);
+
 // The options of the run command that give this scene.
 std::string options_of(const impact_damper::Scene& scene);
 
