@@ -29,10 +29,9 @@ constexpr Accuracy central_differences{1e-5, 1e-5, 1e-2, 3, true};
 // where that is not short enough, and each of them by 4 for the order.
 constexpr std::array<double, 3> finer_steps{1, 4, 16};
 double first_step(const Scene& scene) {
-  const double contact = std::sqrt(scene.damper().mass_ratio /
-                                   (scene.damper().wall_stiffness * (1 + scene.damper().mass_ratio)));
-  const double shortest =
-      std::min({contact, 1.0, scene.force_amplitude != 0 ? 1 / scene.force_frequency : 1.0});
+  double shortest = std::min(1.0, scene.force_amplitude != 0 ? 1 / scene.force_frequency : 1.0);
+  for (const SceneDamper& each : scene.dampers)
+    shortest = std::min(shortest, std::sqrt(each.mass_ratio / (each.wall_stiffness * (1 + each.mass_ratio))));
   return std::numbers::pi / 100 * shortest;
 }
 
@@ -1111,7 +1110,7 @@ Setting setting_of(const Scene& scene, const Engine& engine, const Comparing& ho
   if (how.as_list || scene.dampers.size() > 1) {
     question.most_impacts = 8000;
     question.most_steps = question.walls == Walls::rigid ? 32'000 : 5'000;
-    setting.accuracy.predictable = 1e-10;
+    if (!setting.accuracy.by_steps) setting.accuracy.predictable = 1e-10;
   }
   if (how.most_steps > 0) question.most_steps = how.most_steps;
   setting.nested = question.walls == Walls::rigid && scene.dampers.size() > 1;

@@ -39,7 +39,7 @@ struct Comparing {
   double allowed = operations;  // of exact and restitution
 };
 
-// The scene must have until_time; cem: of one damper.
+// The scene must have until_time.
 Comparison compare(const impact_damper::Scene& scene, const impact_damper::Engine& engine,
                    const Comparing& how = {});
 

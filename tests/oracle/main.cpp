@@ -1,14 +1,15 @@
 // The program of the oracle.
 //
 //   impact-damper-oracle [--dampers one|several] [--kind KIND] [--engine ENGINE] [--seed N] [--count M]
-//                        [--threads N] [--results FILE]
+//                        [--components no|yes] [--threads N] [--results FILE]
 //   impact-damper-oracle [--engine ENGINE] [--scene FILE] [the scene options of `impact-damper run`]
 //
 // The first form compares the scenes of seeds N to N + M - 1 with the oracle: KIND random or round, ENGINE
 // exact, restitution or cem, all of both if not given; of several dampers KIND aimed, too, and ENGINE exact
-// or restitution. It prints every scene that differs, with what runs it, and a table; FILE gets the same as a
-// section of a Markdown page. The second form prints the oracle's own run of one scene, one event a line, and
-// where the engine differs. Exit code 1 if anything differs, 2: usage.
+// or restitution. With components the scenes have friction, weight and drag, of several dampers for cem, too.
+// It prints every scene that differs, with what runs it, and a table; FILE gets the same as a section of a
+// Markdown page. The second form prints the oracle's own run of one scene, one event a line, and where the
+// engine differs. Exit code 1 if anything differs, 2: usage.
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -31,7 +32,7 @@ using namespace impact_damper;
 constexpr double least_share = 0.5;
 
 struct Options {
-  bool several = false;
+  bool several = false, components = false;
   std::vector<std::string> kinds{"random", "round", "aimed"}, engines{"exact", "restitution", "cem"};
   std::int64_t first = 1, count = 100;
   Threads threads = 2;
@@ -46,15 +47,18 @@ Engine engine_named(const std::string& name) {
   return Exact{};
 }
 
-Scene scene_of(const std::string& kind, const std::string& engine, bool several, std::uint64_t seed) {
-  const bool rigid = engine == Restitution::name;
-  if (!several) {
-    const Scene scene = kind == "random" ? random_scene(seed, rigid) : round_scene(seed, rigid);
-    return engine == Cem::name ? within_steps(scene) : scene;
-  }
+Scene without_components(const std::string& kind, bool rigid, bool several, std::uint64_t seed) {
+  if (!several) return kind == "random" ? random_scene(seed, rigid) : round_scene(seed, rigid);
   if (kind == "random") return rigid ? random_list(seed) : random_compliant_list(seed);
   if (kind == "round") return rigid ? round_list(seed) : round_compliant_list(seed);
   return rigid ? aimed_list(seed) : aimed_compliant_list(seed);
+}
+
+Scene scene_of(const std::string& kind, const std::string& engine, const Options& options,
+               std::uint64_t seed) {
+  Scene scene = without_components(kind, engine == Restitution::name, options.several, seed);
+  if (options.components) scene = with_components(scene, seed, kind == "round");
+  return engine == Cem::name ? within_steps(scene) : scene;
 }
 
 std::string rounded(double number, int digits = 2) {
@@ -74,7 +78,7 @@ struct Row {
 Row compare_all(const std::string& kind, const std::string& engine, const Options& options) {
   std::vector<Comparison> all(static_cast<std::size_t>(options.count));
   const auto scene = [&](std::int64_t i) {
-    return scene_of(kind, engine, options.several, static_cast<std::uint64_t>(options.first + i));
+    return scene_of(kind, engine, options, static_cast<std::uint64_t>(options.first + i));
   };
   for_each_index(options.count, options.threads, [&](std::int64_t i) {
     all[static_cast<std::size_t>(i)] = compare(scene(i), engine_named(engine), {.as_list = options.several});
@@ -113,7 +117,8 @@ std::string table(const std::vector<Row>& rows, const Options& options) {
       "| scenes | engine | number | whole | share of time | numbers | impacts | worst error, predicted "
       "ones | which | differ |\n|---|---|---|---|---|---|---|---|---|---|\n";
   for (const Row& row : rows)
-    text += "| " + row.kind + (options.several ? ", several dampers | " : " | ") + row.engine + " | " +
+    text += "| " + row.kind + (options.components ? " with components" : "") +
+            (options.several ? ", several dampers | " : " | ") + row.engine + " | " +
             std::to_string(row.scenes) + " | " + std::to_string(row.whole) + " | " + rounded(row.share, 3) +
             " | " + std::to_string(row.numbers) + " | " + std::to_string(row.impacts) +
             (options.several ? ", together " + std::to_string(row.together) : "") + " | " +
@@ -125,7 +130,8 @@ std::string table(const std::vector<Row>& rows, const Options& options) {
 int usage(const std::string& what) {
   std::cerr << "impact-damper-oracle: " << what
             << "\nusage: impact-damper-oracle [--dampers one|several] [--kind random|round|aimed] "
-               "[--engine exact|restitution|cem] [--seed N] [--count N] [--threads N] [--results FILE]\n"
+               "[--engine exact|restitution|cem] [--components no|yes] [--seed N] [--count N] "
+               "[--threads N] [--results FILE]\n"
                "       impact-damper-oracle [--engine ENGINE] [--scene FILE] [scene options of "
                "impact-damper run]\n";
   return 2;
@@ -136,7 +142,7 @@ int compare_many(const Options& options) {
   bool missed = false;
   for (const std::string& kind : options.kinds)
     for (const std::string& engine : options.engines) {
-      if (options.several ? engine == Cem::name : kind == "aimed") continue;
+      if (options.several ? engine == Cem::name && !options.components : kind == "aimed") continue;
       rows.push_back(compare_all(kind, engine, options));
       const Row& row = rows.back();
       for (const std::string& failure : row.failures) std::cout << kind << ' ' << failure;
@@ -197,6 +203,8 @@ int run(const std::vector<std::string>& words) {
     if (word == "--kind" || word == "--engine") continue;
     if (word == "--dampers" && (value == "one" || value == "several")) {
       options.several = value == "several";
+    } else if (word == "--components" && (value == "no" || value == "yes")) {
+      options.components = value == "yes";
     } else if (word == "--seed" && whole) {
       options.first = *whole;
     } else if (word == "--count" && whole) {

@@ -112,12 +112,16 @@ Scene round_scene(std::uint64_t seed, bool rigid) {
 }
 
 Scene within_steps(Scene scene) {
-  scene.damper().mass_ratio = std::clamp(scene.damper().mass_ratio, 1e-3, 100.0);
-  const double nu = scene.damper().mass_ratio;
-  scene.damper().wall_stiffness = std::min(scene.damper().wall_stiffness, 100 * 100 * nu / (1 + nu));
+  for (SceneDamper& each : scene.dampers) {
+    each.mass_ratio = std::clamp(each.mass_ratio, 1e-3, 100.0);
+    const double nu = each.mass_ratio;
+    each.wall_stiffness = std::min(each.wall_stiffness, 100 * 100 * nu / (1 + nu));
+    each.clearance = std::max(each.clearance, 0.1);
+    each.w0 = std::clamp(each.w0, -20.0, 20.0);
+  }
   scene.damping_ratio = std::min(scene.damping_ratio, 3.0);
   scene.force_frequency = std::min(scene.force_frequency, 10.0);
-  for (double* const each : {&scene.x0, &scene.v0, &scene.damper().w0, &scene.force_amplitude})
+  for (double* const each : {&scene.x0, &scene.v0, &scene.force_amplitude})
     *each = std::clamp(*each, -20.0, 20.0);
   scene.until_time = std::min(*scene.until_time, 15.0);
   return scene;
