@@ -98,10 +98,10 @@ def main():
     options = parser.parse_args()
 
     tests = options.build.resolve() / "tests"
-    # The files of a program are included by one source (../together.cmake).
+    # The files of a program are included by one source (../together.cmake). Not among them are those of steady/ and sweeps/.
     everything = {file: [tests / together.stem.replace("together_", "test_"), f"--source-file=*/{file}.cpp"]
                   for together in sorted(tests.glob("together_*.cpp"))
-                  for file in re.findall(r'^#include ".*/(\w+)[.]cpp"$', together.read_text(), re.MULTILINE)}
+                  for file in re.findall(r'^#include ".*/tests/(\w+)[.]cpp"$', together.read_text(), re.MULTILINE)}
     rest = [] if options.first else [name for name in everything if name not in FIRST]
     programs = {name: everything[name] for name in FIRST + rest}
     file = options.build.resolve() / "outputs.md"
