@@ -200,22 +200,37 @@ command_test("readme: all tables, outputs and figures can be made anew" regressi
 function(refreshed_test name)
   command_test(${name} regression COMMAND ${ARGN} PROPERTIES FIXTURES_REQUIRED refreshed)
 endfunction()
-set(compare sh ${tests}/checks/compare.sh ${source} ${new})
-refreshed_test("readme: every output and verdict printed in it is the program's" ${compare} README.md)
+# sh -c ${compare} COMMITTED NEW FILE...: fails if a file differs in these two folders, and shows where.
+set(compare [[new=$1 differing=
+              shift
+              for file
+              do
+                cmp -s "$0/$file" "$new/$file" && continue
+                echo "$file is not what the program makes:"
+                diff "$0/$file" "$new/$file" | cut -c 1-300 | head -n 20
+                differing=1
+              done
+              [ -z "$differing" ] || ! echo "If the new one is right: make reference"]])
+# same_files_test(NAME FILE...): each is what paper/refresh makes.
+function(same_files_test name)
+  refreshed_test(${name} sh -c ${compare} ${source} ${new} ${ARGN})
+endfunction()
+same_files_test("readme: every output and verdict printed in it is the program's" README.md)
 foreach(page compare response sweeps)
-  refreshed_test("readme: every output printed in docs/${page}.md is the program's" ${compare} docs/${page}.md)
+  same_files_test("readme: every output printed in docs/${page}.md is the program's" docs/${page}.md)
 endforeach()
-refreshed_test("readme: docs/report.md has the numbers and verdicts of the results" ${compare} docs/report.md)
+same_files_test("readme: docs/report.md has the numbers and verdicts of the results" docs/report.md)
 refreshed_test("readme: the pictures of the examples are the program's"
-               sh -c [[by=checks/compare.sh
-                       cmp -s "$1/data/reference/made_with.txt" "$2/data/reference/made_with.txt" || by="same_bits/differences.py --drawn"
-                       cd "$1/data/examples" && exec "$0"/$by . "$2/data/examples" *.svg]] ${tests} ${source} ${new})
-refreshed_test("paper: every output and verdict printed in it is the program's" ${compare} paper/claims.md paper/deviations.md)
+               sh -c [[cd "$1/data/examples" || exit
+                       cmp -s "$1/data/reference/made_with.txt" "$2/data/reference/made_with.txt" ||
+                         exec "$0/same_bits/differences.py" --drawn . "$2/data/examples" *.svg
+                       exec sh -c "$3" . "$2/data/examples" *.svg]] ${tests} ${source} ${new} ${compare})
+same_files_test("paper: every output and verdict printed in it is the program's" paper/claims.md paper/deviations.md)
 refreshed_test("reference: tables, figures and sums are what the program makes"
                ${tests}/same_bits/differences.py --reference ${source}/data/reference ${new}/data/reference)
 
 # What the project says of itself to those who cite it, held against its formats and against the files.
-refreshed_test("citing: what describes the project for programs is up to date" ${compare} CITATION.cff codecheck.yml)
+same_files_test("citing: what describes the project for programs is up to date" CITATION.cff codecheck.yml)
 python_test("citing: CITATION.cff, codecheck.yml and the RO-Crate keep to their formats" regression citing/formats.py ${new}
             PROPERTIES FIXTURES_REQUIRED refreshed)
 python_test("citing: every stamp leads from its picture to its data, and back to the picture" regression citing/leads_back.py
