@@ -3,7 +3,7 @@
     library.py PROGRAM FOLDER COMPILER
 
 PROGRAM is where it was installed, under a DESTDIR: not where it was meant to be, so a path that was written down leads
-nowhere. examples/ must print what stands beside them; an engine that is compiled by the stranger must give the
+nowhere. examples/ must print what their README.md shows; an engine that is compiled by the stranger must give the
 program's bytes, also for a processor with fused multiply-add; no compilation may read Eigen or nlohmann-json.
 """
 import itertools
@@ -27,6 +27,8 @@ add_executable(columns columns.cpp)
 target_link_libraries(columns PRIVATE impact_damper::impact_damper)
 """
 PRIVATE = re.compile(r"eigen3?/|nlohmann", re.I)
+# Name of an example -> what it prints.
+SHOWN = dict(re.findall(r"^## \[(\S+)\]\S+\n\n```text\n(.*?)```$", (source / "examples/README.md").read_text(), re.M | re.S))
 
 
 def run(*command, **options) -> str:
@@ -51,13 +53,13 @@ def built(name: str, sources: Path, flags: list) -> Path:
     return build
 
 
-def the_examples_print_what_stands_beside_them():
+def the_examples_print_what_is_shown():
     build = built("examples", source / "examples", QUICK)
     sources = sorted((source / "examples").glob("*.c*"))
     demand(len(sources) >= 4, sources)
     for file in sources:
         printed = run(build / file.stem)
-        demand(printed == file.with_suffix(".txt").read_text(), f"{file.stem} prints\n{printed}")
+        demand(printed == SHOWN[file.name], f"{file.stem} prints\n{printed}")
         demand(len(file.read_text().splitlines()) <= 40, f"{file} is no short example")
 
 
@@ -82,7 +84,7 @@ def pkg_config_is_enough():
     example, binary = folder / "examples/source/observer", folder / "by_pkg_config"
     # As README.md says, and with the warnings that somebody might have turned on.
     run(COMPILER, *QUICK, "-Wall", "-Wextra", "-Werror", f"{example}.cpp", *flags, *libraries, "-o", binary)
-    demand(run(binary) == example.with_suffix(".txt").read_text(), "by pkg-config the example prints something else")
+    demand(run(binary) == SHOWN["observer.cpp"], "by pkg-config the example prints something else")
     # Each public header has all that it includes, and no two of them are at odds.
     headers = sorted(str(file.relative_to(PREFIX / "include")) for file in (PREFIX / "include").rglob("*.h*"))
     demand(len(headers) > 40 and not any("json" in name or "reproduction" in name for name in headers), headers)
@@ -103,7 +105,7 @@ missing = [tool for tool in ("ninja", "pkg-config") if not shutil.which(tool)]
 if missing:
     skip(f"for want of {missing}: make deps-check")
 nothing_names_the_build()
-the_examples_print_what_stands_beside_them()
+the_examples_print_what_is_shown()
 an_engine_compiled_here_gives_the_programs_bytes()
 pkg_config_is_enough()
 finish()

@@ -269,10 +269,11 @@ class Module(unittest.TestCase):
             for value in schema:
                 yield from self.keys_of(value)
 
-    def test_the_example_prints_what_stands_beside_it(self):
+    def test_the_example_prints_what_is_shown(self):
         done = subprocess.run([sys.executable, "-B", SOURCE / "src/python/decay.py"], capture_output=True, text=True,
                               env={"PYTHONPATH": str(MODULE.parent)}, check=True)
-        self.assertEqual(done.stdout, (SOURCE / "src/python/decay.txt").read_text())
+        shown = (SOURCE / "examples/README.md").read_text().split("## [decay.py]")[1]
+        self.assertEqual(done.stdout, re.search(r"```text\n(.*?)```", shown, re.S)[1])
 
 
 FOLDER.mkdir(parents=True, exist_ok=True)
