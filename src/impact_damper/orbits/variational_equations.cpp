@@ -119,98 +119,82 @@ class JointPropagator {
   Matrix matrix_;
 };
 
-// Carries changes along one run, motion by motion.
-class VariationalEquations {
- public:
-  VariationalEquations(const VariationalCoefficients& of, const RecordedRun& run, AlongRun* along,
-                       const Changes& changes, const std::function<void()>& after_step)
-      : of_(of),
-        run_(run),
-        along_(along),
-        changes_(changes),
-        after_step_(after_step),
-        now_(of, run),
-        event_(of.dampers.size()) {}
+// Sets `all` to the rates of the state `now`: x', x'', then y' and y'' of each damper.
+void find_rates(const VariationalCoefficients& of, const MassesAlongRun& now, double time,
+                ChangeOfState& all) {
+  double a = of.force.amplitude * of.force.phase(time).sin - 2 * of.zeta * now.v - now.x;
+  all.resize(of.dimensions());
+  for (std::size_t i = 0; i < now.masses.size(); ++i) {
+    const bool free = now.masses[i].wall == 0;
+    all[index_of_y(i)] = free || !of.rigid ? now.masses[i].w : 0;
+    all[index_of_w(i)] = 0;
+    if (free || of.rigid) continue;
+    const OfDamper& its = of.dampers[i];
+    const double push =
+        its.damping * now.masses[i].w + its.stiffness * (now.masses[i].y - now.position_of_wall(i));
+    a += its.nu * push;
+    all[index_of_w(i)] = -push;
+  }
+  if (of.rigid) a /= now.joined_mass();
+  all[0] = now.v, all[1] = a;
+  for (std::size_t i = 0; i < now.masses.size(); ++i)
+    if (now.masses[i].wall == 0 || !of.rigid) all[index_of_w(i)] -= a;
+}
 
-  Carried carry() {
-    for (std::size_t n = 0; n < run_.chain.motions.size(); ++n) {
-      if (of_.rigid) {
-        pass_rigid_event(n);
-      } else {
-        pass_compliant_events(n);
-      }
-      const MotionChain::Motion& motion = run_.chain.motions[n];
-      if (of_.rigid) all_.lost = std::max(all_.lost, 2 * now_.in_contact.size());
-      if (of_.rigid || now_.in_contact.empty()) {
-        pass_flight(motion);
-      } else if (now_.in_contact.size() > 1) {
-        pass_joint_contact(motion);
-      } else if (const UnforcedModes& modes = *of_.dampers[now_.in_contact.front()].modes; modes.coupled) {
-        pass_contact<ContactWithoutModes<double, Unforced>>(modes, motion);
-      } else {
-        pass_contact<Contact<double, Unforced>>(modes, motion);
-      }
-      now_.pass(motion);
+// The saltation matrix of an event at rigid walls (M13.4).
+class RigidSaltation {
+ public:
+  // Both must outlive this object.
+  RigidSaltation(const VariationalCoefficients& of, const MassesAlongRun& now)
+      : of_(of), now_(now), event_(of.dampers.size()) {}
+
+  // Finds the matrix of an event at a time: begin() is called before its jump of the state, find() after it.
+  void begin(double time) { find_rates(of_, now_, time, rates_before_); }
+  void find(double time) {
+    find_rates(of_, now_, time, rates_after_);
+    find_shares();
+    for (const MotionChain::Impact& impact : now_.impacts)
+      find_saltation(event_[std::size_t(impact.damper)].saltation, impact.w * double(now_.impacts.size()));
+  }
+  // Multiplies a change by it.
+  void apply(ChangeOfState& s) {
+    const Taken taken = taken_by(s);
+    double x = s[0], v = s[1];
+    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
+      const MassesAlongRun::Mass& mass = now_.masses[i];
+      const EventOfMass& its = event_[i];
+      const double y = s[index_of_y(i)], w = s[index_of_w(i)];
+      if (mass.meets || mass.joins) x += (its.share + (mass.meets ? its.saltation[0] : 0)) * y;
+      if (mass.meets) v += its.saltation[1] * y;
+      v += its.of_w * w;
     }
-    if (along_) {
-      now_.x = run_.end.x, now_.v = run_.end.v;
-      for (std::size_t i = 0; i < now_.masses.size(); ++i)
-        now_.masses[i].y = run_.end.dampers[i].y, now_.masses[i].w = run_.end.dampers[i].w;
-      rates(run_.end_time, along_->rates_at_end);
+    shifted_.assign(s.size(), 0.0);  // by the delay of the impacts of other masses, and in y' of its own
+    for (std::size_t k = 0; k < now_.masses.size(); ++k) {
+      if (!now_.masses[k].meets) continue;
+      for (std::size_t i = 2; i < s.size(); ++i)
+        if (i != index_of_y(k)) shifted_[i] += event_[k].saltation[i] * s[index_of_y(k)];
     }
-    all_.contacts = std::move(now_.contacts);
-    return std::move(all_);
+    s[0] = x;
+    s[1] = v;
+    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
+      double &y = s[index_of_y(i)], &w = s[index_of_w(i)];
+      if (now_.masses[i].wall != 0) {
+        y = w = 0;
+        continue;
+      }
+      const double own = now_.masses[i].meets ? 1 + event_[i].saltation[index_of_y(i)] : 1;
+      y = own * y - taken.y + shifted_[index_of_y(i)];
+      w = velocity_after(i, w, taken) + shifted_[index_of_w(i)];
+    }
   }
 
  private:
-  // The rates of the state: x', x'', then y' and y'' of each damper.
-  void rates(double time, ChangeOfState& all) const {
-    double a = of_.force.amplitude * of_.force.phase(time).sin - 2 * of_.zeta * now_.v - now_.x;
-    all.resize(of_.dimensions());
-    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
-      const bool free = now_.masses[i].wall == 0;
-      all[index_of_y(i)] = free || !of_.rigid ? now_.masses[i].w : 0;
-      all[index_of_w(i)] = 0;
-      if (free || of_.rigid) continue;
-      const OfDamper& its = of_.dampers[i];
-      const double push =
-          its.damping * now_.masses[i].w + its.stiffness * (now_.masses[i].y - now_.position_of_wall(i));
-      a += its.nu * push;
-      all[index_of_w(i)] = -push;
-    }
-    if (of_.rigid) a /= now_.joined_mass();
-    all[0] = now_.v, all[1] = a;
-    for (std::size_t i = 0; i < now_.masses.size(); ++i)
-      if (now_.masses[i].wall == 0 || !of_.rigid) all[index_of_w(i)] -= a;
-  }
-  // carry(s, piece): carries a change through an event, or a piece of a motion.
-  template <class Carry>
-  void carry_all(int pieces, Carry&& carry) {
-    for (int piece = 0; piece < pieces; ++piece) {
-      for (ChangeOfState* const each : changes_) carry(*each, piece);
-      if (after_step_) after_step_();
-    }
-  }
-
-  // What an event at rigid walls does to one mass.
+  // What the event does to one mass.
   struct EventOfMass {
     double gain, share, of_w;  // x' gains gain y' by its impulse, share y' by its joining, of_w y' in all
     std::vector<double> saltation = {};  // meets: (F^+ - D F^-)/(n F^-) of (M13.4)
   };
-  // Applies the event between the motion n and the one before, if there is one: to the changes its saltation
-  // matrix (M13.4), to the state its jump.
-  void pass_rigid_event(std::size_t n) {
-    if (!now_.comes_to_rigid_event(n)) return;
-    const double time = run_.chain.motions[n].begin;
-    rates(time, rates_before_);
-    now_.pass_rigid_event(n);
-    rates(time, rates_after_);
-    find_shares();
-    all_.one_sided = all_.one_sided || now_.impacts.size() > 1;
-    for (const MotionChain::Impact& impact : now_.impacts)
-      find_saltation(event_[std::size_t(impact.damper)].saltation, impact.w * double(now_.impacts.size()));
-    carry_all(1, [&](ChangeOfState& s, int) { apply_saltation(s); });
-  }
+
   // Finds the coefficients of (M13.23) and (M13.24), which is (M13.7) for one mass.
   void find_shares() {
     const double joined_mass = now_.joined_mass();
@@ -263,37 +247,78 @@ class VariationalEquations {
     }
     for (double& each : all) each /= w;
   }
-  void apply_saltation(ChangeOfState& s) {
-    const Taken taken = taken_by(s);
-    double x = s[0], v = s[1];
-    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
-      const MassesAlongRun::Mass& mass = now_.masses[i];
-      const EventOfMass& its = event_[i];
-      const double y = s[index_of_y(i)], w = s[index_of_w(i)];
-      if (mass.meets || mass.joins) x += (its.share + (mass.meets ? its.saltation[0] : 0)) * y;
-      if (mass.meets) v += its.saltation[1] * y;
-      v += its.of_w * w;
-    }
-    shifted_.assign(s.size(), 0.0);  // by the delay of the impacts of other masses, and in y' of its own
-    for (std::size_t k = 0; k < now_.masses.size(); ++k) {
-      if (!now_.masses[k].meets) continue;
-      for (std::size_t i = 2; i < s.size(); ++i)
-        if (i != index_of_y(k)) shifted_[i] += event_[k].saltation[i] * s[index_of_y(k)];
-    }
-    s[0] = x;
-    s[1] = v;
-    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
-      double &y = s[index_of_y(i)], &w = s[index_of_w(i)];
-      if (now_.masses[i].wall != 0) {
-        y = w = 0;
-        continue;
+
+  const VariationalCoefficients& of_;
+  const MassesAlongRun& now_;
+  std::vector<EventOfMass> event_;
+  ChangeOfState rates_before_, rates_after_;  // F^- and F^+
+  ChangeOfState shifted_;
+};
+
+// Carries changes along one run, motion by motion.
+class VariationalEquations {
+ public:
+  VariationalEquations(const VariationalCoefficients& of, const RecordedRun& run, AlongRun* along,
+                       const Changes& changes, const std::function<void()>& after_step)
+      : of_(of),
+        run_(run),
+        along_(along),
+        changes_(changes),
+        after_step_(after_step),
+        now_(of, run),
+        saltation_(of, now_) {}
+
+  Carried carry() {
+    for (std::size_t n = 0; n < run_.chain.motions.size(); ++n) {
+      if (of_.rigid) {
+        pass_rigid_event(n);
+      } else {
+        pass_compliant_events(n);
       }
-      const double own = now_.masses[i].meets ? 1 + event_[i].saltation[index_of_y(i)] : 1;
-      y = own * y - taken.y + shifted_[index_of_y(i)];
-      w = velocity_after(i, w, taken) + shifted_[index_of_w(i)];
+      const MotionChain::Motion& motion = run_.chain.motions[n];
+      if (of_.rigid) all_.lost = std::max(all_.lost, 2 * now_.in_contact.size());
+      if (of_.rigid || now_.in_contact.empty()) {
+        pass_flight(motion);
+      } else if (now_.in_contact.size() > 1) {
+        pass_joint_contact(motion);
+      } else if (const UnforcedModes& modes = *of_.dampers[now_.in_contact.front()].modes; modes.coupled) {
+        pass_contact<ContactWithoutModes<double, Unforced>>(modes, motion);
+      } else {
+        pass_contact<Contact<double, Unforced>>(modes, motion);
+      }
+      now_.pass(motion);
+    }
+    if (along_) {
+      now_.x = run_.end.x, now_.v = run_.end.v;
+      for (std::size_t i = 0; i < now_.masses.size(); ++i)
+        now_.masses[i].y = run_.end.dampers[i].y, now_.masses[i].w = run_.end.dampers[i].w;
+      find_rates(of_, now_, run_.end_time, along_->rates_at_end);
+    }
+    all_.contacts = std::move(now_.contacts);
+    return std::move(all_);
+  }
+
+ private:
+  // carry(s, piece): carries a change through an event, or a piece of a motion.
+  template <class Carry>
+  void carry_all(int pieces, Carry&& carry) {
+    for (int piece = 0; piece < pieces; ++piece) {
+      for (ChangeOfState* const each : changes_) carry(*each, piece);
+      if (after_step_) after_step_();
     }
   }
 
+  // Applies the event between the motion n and the one before, if there is one: to the changes its saltation
+  // matrix (M13.4), to the state its jump.
+  void pass_rigid_event(std::size_t n) {
+    if (!now_.comes_to_rigid_event(n)) return;
+    const double time = run_.chain.motions[n].begin;
+    saltation_.begin(time);
+    now_.pass_rigid_event(n);
+    saltation_.find(time);
+    all_.one_sided = all_.one_sided || now_.impacts.size() > 1;
+    carry_all(1, [&](ChangeOfState& s, int) { saltation_.apply(s); });
+  }
   // Applies the touches and ends of contacts between the motion n and the one before (M13.25).
   void pass_compliant_events(std::size_t n) {
     now_.come_to_compliant_events(n);
@@ -459,9 +484,7 @@ class VariationalEquations {
   const std::function<void()>& after_step_;
   // y is not followed, nor y' with compliant walls, where no matrix depends on them.
   MassesAlongRun now_;
-  std::vector<EventOfMass> event_;            // at rigid walls
-  ChangeOfState rates_before_, rates_after_;  // F^- and F^+ of that event
-  ChangeOfState shifted_;
+  RigidSaltation saltation_;
   Carried all_;
 };
 
