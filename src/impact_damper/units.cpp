@@ -71,8 +71,8 @@ SceneNumber number_named(std::string_view name) {
   return its->number;
 }
 
-// Sets the components. Gravity acts along the cavities with the sine of their inclination, and across them
-// with its cosine.
+// Sets the components (M18.2). Gravity acts along the cavities with the sine of their inclination, and across
+// them with its cosine.
 void set_components(Scene& made, const SceneInUnits& scene, const Scales& scales) {
   const double gravity = scene.gravity.value_or(standard_gravity) / scales.of(acceleration);
   const double along = scene.inclination.value_or(0), steep = 90 - along;  // 0 and 90 exactly

@@ -218,7 +218,7 @@ TEST_CASE("what is wrong with a plan is told, all at once") {
        "/grid: must name each number once, got \"x0\" twice");
   only(mast + R"("samples": {"count": 2, "numbers": [{"number": "damping", "half_width": 1}]})",
        "/samples: \"damping\" has no value in the scene to vary about");
-  told(decay + R"("grid": [{"number": "mass_rato", "values": [1]}])", "must be one of \"mass_ratio\"");
+  told(decay + R"("grid": [{"number": "mass_rato", "values": [1]}])", "did you mean \"mass_ratio\"?");
   CHECK(problem_of(decay + R"("grid": [{"number": "restitution", "values": [0.5, 1.5]}])")
             .starts_with("plan.json: /grid/0/values/1: must be "));
   told(decay + R"("grid": [{"number": "x0", "values": [1]}],

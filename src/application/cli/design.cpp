@@ -13,7 +13,7 @@ namespace {
 
 SceneFile scene_with_one_damper(Arguments& arguments) {
   SceneFile file = scene_of(arguments, Stops::ignored);
-  require_one_damper(file.scene, scene_name_of(arguments));
+  require_one_ideal_damper(file.scene, scene_name_of(arguments));
   reject_options_beside_units(arguments, file, "");
   return file;
 }

@@ -175,8 +175,12 @@ SceneFile scene_of(Arguments& arguments, Stops stops) {
 
 std::string scene_name_of(const Arguments& arguments) { return arguments.text("--scene").value_or(""); }
 
-void require_one_damper(const Scene& scene, const std::string& scene_file) {
+void require_one_ideal_damper(const Scene& scene, const std::string& scene_file) {
   if (!has_one_damper(scene)) throw InputError(scene_file, {{"/dampers", problem_of_several().message}});
+  if (has_components(scene))
+    throw InputError(scene_file, {{"",
+                                   "friction, weight and drag are not for this command, which does not take "
+                                   "them into account: leave them out"}});
 }
 
 void reject_options_beside_units(Arguments& arguments, const SceneFile& scene, const std::string& instead) {

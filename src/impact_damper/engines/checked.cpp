@@ -99,7 +99,7 @@ std::vector<Problem> incompatibilities_of(const Scene& scene, const Engine& engi
       if (const double value = SceneNumber{field.number, i}.in(scene); value != 0)
         problems.push_back({one || field.number.own ? std::string(field.name) : damper_field(i, field.name),
                             "must be 0 with the " + std::string(name_of(engine)) + " engine, got " +
-                                number_text(value) + ": --engine cem has friction, weight and drag"});
+                                number_text(value) + ": only the cem engine has friction, weight and drag"});
   }
   if (cem && cem->time_step) problems = problems_of(scene, *cem);
   if (one && has_rigid_walls(engine) && !within(0, 1).allows(scene.damper().y0)) {

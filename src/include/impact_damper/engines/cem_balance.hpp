@@ -1,5 +1,5 @@
-// The energy balance of a run by the component element method. Its integrals are trapezoids over the steps:
-// CemSteps sums whole powers, this class adds the ends.
+// The energy balance of a run by the component element method, (M8.1), with components (M18.5). Its integrals
+// are trapezoids over the steps: CemSteps sums whole powers, this class adds the ends.
 #pragma once
 
 #include <algorithm>

@@ -194,10 +194,10 @@ struct CemMasses {
   // Sets the walls of all masses at a release in the state s, which has y instead of q and is given q. No
   // impact begins the contacts of these masses:
   // - those that overlap a wall;
-  // - those at rest at a wall and pressed to it, unless friction holds them; they are stuck if `joins`. They
-  // are pressed if
-  //   y'' h^2/2 + y''' h^3/6, the way of such a mass in one step, leads into the wall. If `joins`, and y''
-  //   and y''' are zero to rounding, the first later derivative that is not zero decides instead.
+  // - those at rest at a wall and pressed to it, unless friction holds them; they are stuck if `joins`.
+  //   They are pressed if y'' h^2/2 + y''' h^3/6, the way of such a mass in one step, leads into the wall. If
+  //   `joins`, and y'' and y''' are zero to rounding, the first later derivative that is not zero decides
+  //   instead.
   // Returns y'' and y''' of a mass at rest in flight.
   std::pair<Real, Real> begin_contacts(State& s, const Real& h, bool joins) {
     const auto begin_contact = [&](std::size_t i, std::optional<Wall> wall, bool sticks = false) {
@@ -253,7 +253,7 @@ struct CemMasses {
   Real second_as_one(const Real& time, const State& s, const Real& mass) const {
     return (force_at(time) - 2 * zeta * s.v - s.x) / mass;
   }
-  // x'' by (M17.9), with `mass` for the primary mass and the masses joined to it.
+  // x'' by (M17.9), with components by (M18.3), with `mass` for the primary mass and the masses joined to it.
   Real second_of_x(const Real& time, const State& s, const Real& mass) const {
     if (mass > 1 && coupled.empty() && !components) return second_as_one(time, s, mass);
     Real sum = force_at(time);
