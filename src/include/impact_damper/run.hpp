@@ -104,7 +104,8 @@ struct EnergyBalance {
   double forcing_work = 0;                  // put in by the forcing, integral of f0 sin(omega_f t) v
   double friction_loss = 0, drag_loss = 0;  // of all dampers
   // The residual of the balance: left minus right side of the equation above, divided by the sum of the
-  // initial energy and the integral of the forcing's |power|; 0 if that sum is 0.
+  // initial energy, counted with weight from the least there is, and the integral of the forcing's |power|; 0
+  // if that sum is 0.
   double residual = 0;
   // Integral of f0 cos(omega_f t) v, by the exact and restitution engines. With forcing_work it determines
   // the fundamental component of x (steady/steady_state.hpp); no part of the balance, and not in a run file.
