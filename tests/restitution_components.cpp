@@ -53,10 +53,14 @@ class SmallSteps {
   double x() const { return x_; }
   double v() const { return v_; }
   const std::vector<Mass>& masses() const { return masses_; }
-  bool unclear() const { return unclear_; }  // an event is so close to another that steps may mistake it
+  bool unclear() const { return unclear_; }  // whether something happened that is not followed here
 
   void run_until(double until) {
-    while (time_ < until) {
+    for (int steps = 0; time_ < until; ++steps) {
+      if (steps > 20'000) {
+        unclear_ = true;
+        return;
+      }
       double h = std::min(step, until - time_);
       for (const Mass& each : masses_)  // it may be back within the step
         if (!each.held && each.on_wall() && each.w != 0)
@@ -147,30 +151,32 @@ class SmallSteps {
   }
   void handle() {
     bool any = false;
-    for (Mass& each : masses_) {
+    for (Mass& each : masses_) {  // before an impact gives them another speed
       if (each.held) {
         any = any || leaves_band(each, acceleration(time_, x_, v_) + scene_.weight);
-      } else if ((each.y < -tiny / 2 && each.w < 0) ||
-                 (each.y > each.of.clearance + tiny / 2 && each.w > 0)) {
-        impact(each);
-        any = true;
       } else if (each.holds > 0 && each.side * each.w < -tiny / 2) {
         each.w = 0;
         any = true;
       }
+    }
+    for (Mass& each : masses_) {
+      if (each.held ||
+          !((each.y < -tiny / 2 && each.w < 0) || (each.y > each.of.clearance + tiny / 2 && each.w > 0)))
+        continue;
+      impact(each);
+      any = true;
     }
     if (any) settle();
   }
   void impact(Mass& each) {
     each.y = each.w < 0 ? 0 : each.of.clearance;
     const double nu = each.of.mass_ratio, w = each.w, e = each.of.restitution;
-    // Others at rest on walls are pushed or left behind by the jump; only the simple case is followed here.
     const double jump = nu * (1 + e) * w / (1 + nu);
     ++each.impacts;
     for (Mass& other : masses_) {
       if (&other == &each) continue;
       if (other.held && other.on_wall() && (other.at(0) ? jump : -jump) > 0)
-        unclear_ = true;  // carried along
+        unclear_ = true;  // carried along, which is not followed here
       other.w -= jump;
     }
     v_ += jump;

@@ -302,7 +302,7 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
   // Then takes the limit of masses whose chattering is over soon.
   void settle() {
     settle_at_rest();
-    while (take_limits()) settle_at_rest();
+    for (std::size_t n = 0; n < masses_.size() && take_limits(); ++n) settle_at_rest();
   }
   void settle_at_rest() {
     stays_.assign(masses_.size(), false);
@@ -404,6 +404,7 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
     Real per_speed;    // duration of all bounces, divided by the speed with which they begin
     Real lost;         // lambda_i, the fraction of its speed that a bounce takes
     Real landing;      // the speed with which it comes back to its wall
+    Real top;          // how high above its wall it comes
     Real moves;        // by how much its bounces move x at most
     Real by_friction;  // the fraction of its energy that friction takes
   };
@@ -416,7 +417,7 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
     const Real x_scale = epsilon / 8 * (absolute(x_) + absolute(v_));
     candidates_.clear();
     for (std::size_t i = 0; i < masses_.size(); ++i) {
-      if (masses_.held[i] || masses_.away[i] != side || masses_.rests(i)) continue;
+      if (masses_.held[i] || masses_.away[i] != side || masses_.u1[i] == 0) continue;
       const Real &u1 = masses_.u1[i], out = u1 > 0 ? u1 : Real(0),
                  high = masses_.u[i] > 0 ? masses_.u[i] : Real(0);
       if (masses_.nu[i] * (high + out * out / (4 * absolute(now.value))) <= mass_ * x_scale)
@@ -429,15 +430,16 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
     for (const std::size_t i : candidates_) {
       joins_.assign(masses_.size(), false);
       joins_[i] = true;
-      if (join_most(motion, side)) return true;
+      const Joined all = joined_with_all(side);
+      if (all.a > holds_[i] && join_most(motion, side, all)) return true;
     }
     if (candidates_.size() == 1) return false;
     for (const std::size_t i : candidates_) joins_[i] = true;
-    return join_most(motion, side);
+    return join_most(motion, side, joined_with_all(side));
   }
   // x'' + gamma, times `side`, and the sums if all of joins_ have joined those that are held.
   struct Joined {
-    Real a, mass, loses;  // loses: sum of nu (1 - e^2)
+    Real a, mass, loses;  // loses: sum of nu (1 - e^2 r^2), see bounces_of()
   };
   Joined joined_with_all(const Real& side) const {
     Joined all{Real(0), mass_, Real(0)};
@@ -447,43 +449,48 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
         all.mass += masses_.nu[i];
         friction -= masses_.nu[i] * friction_[i] * slides_[i];
       }
-      if (joins_[i] || (masses_.held[i] && on_wall(i) && masses_.away[i] == side))
-        all.loses += masses_.nu[i] * (1 - masses_.e[i] * masses_.e[i]);
     }
     const Real f = system_.forcing.template derivatives<2>(system_.forcing.phase(tracker_.now()))[0];
     all.a = side * (f - 2 * system_.zeta * v_ - x_ + friction + weight_) / all.mass;
+    for (std::size_t i = 0; i < masses_.size(); ++i)
+      if (joins_[i] || (masses_.held[i] && on_wall(i) && masses_.away[i] == side))
+        all.loses += loses(i, all.a);
     return all;
   }
+  // The fraction r^2 of its energy with which a mass comes back to its wall: 0 where friction holds it above.
+  Real comes_back(std::size_t i, const Real& a) const {
+    return a > holds_[i] ? Real((a - friction_[i]) / (a + friction_[i])) : Real(0);
+  }
+  Real loses(std::size_t i, const Real& a) const {
+    return masses_.nu[i] * (1 - masses_.e[i] * masses_.e[i] * comes_back(i, a));
+  }
+  // all.a: with all that join.
   Chattering bounces_of(std::size_t i, const Joined& all) const {
     const Real &nu = masses_.nu[i], &e = masses_.e[i], &phi = friction_[i], &u1 = masses_.u1[i];
     const Real others = all.mass - nu, share = all.mass / others;
-    const Real out = share * (all.a + phi), back = share * (all.a - phi), r = square_root(Real(back / out));
-    const Real kicks = nu / (1 + nu) * (all.loses - nu * (1 - e * e)) / others;
+    const Real out = share * (all.a + phi), back = share * (all.a - phi), r_2 = comes_back(i, all.a),
+               r = square_root(r_2);
+    const Real kicks = nu / (1 + nu) * (all.loses - loses(i, all.a)) / others;
     const Real lost = (1 - e * r) + (1 + e) * r * (kicks > 0 ? kicks : Real(0));
-    Chattering one{i, {}, {}, lost < 1 ? lost : Real(1), {}, {}, {}};
-    const Real u = masses_.u[i] > 0 ? masses_.u[i] : Real(0);
-    const Real top = u1 > 0 ? Real(u + u1 * u1 / (2 * out)) : u, down = u1 < 0 ? Real(-u1) : Real(0);
-    one.landing = square_root(Real(down * down + 2 * back * top));
-    const Real flies = (u1 > 0 ? Real(u1 / out) : Real(0)) + (one.landing - down) / back;
-    one.per_speed = (1 + 1 / r) / (out * one.lost);  // of the speed upwards
-    one.lasts = flies;
-    if (one.landing > 0) one.lasts += one.landing * ((1 - one.lost) / r) * one.per_speed;
-    one.moves = nu * (u1 < 0 ? Real(one.landing * one.landing / (2 * back)) : top) / mass_;
-    one.by_friction = phi > 0 ? Real((1 - r * r) / (1 - e * e * r * r)) : Real(0);
+    Chattering one{i, {}, {}, lost < 1 ? lost : Real(1), {}, {}, {}, {}};
+    const Real u = masses_.u[i] > 0 ? masses_.u[i] : Real(0), up = u1 > 0 ? u1 : Real(0), down = up - u1;
+    const Real top = u + up * up / (2 * out), falls = 2 * (back > 0 ? back : Real(0)) * top;
+    one.top = top;
+    one.landing = square_root(Real(down * down + falls));
+    if (r > 0) {
+      one.per_speed = (1 + 1 / r) / (out * one.lost);  // of the speed upwards
+      one.lasts = up / out + (one.landing - down) / back;
+      if (one.landing > 0) one.lasts += one.landing * ((1 - one.lost) / r) * one.per_speed;
+    } else {  // it stops the next time that its speed is zero, after one impact at most
+      one.per_speed = 1 / out;
+      one.lasts = up / out + (down > 0 ? Real(2 * u / down) : Real(0)) + e * one.landing / out;
+    }
+    one.moves = nu * (down > 0 && r > 0 ? Real(one.landing * one.landing / (2 * back)) : top) / mass_;
+    one.by_friction = phi > 0 ? Real((1 - r_2) / (1 - e * e * r_2)) : Real(0);
     return one;
   }
   // Of the masses in joins_ joins as many as can, those that are over first before others.
-  bool join_most(const Motion& motion, const Real& side) {
-    Joined all = joined_with_all(side);
-    for (bool again = true; again;) {  // without those that friction holds above their wall
-      again = false;
-      for (const std::size_t i : candidates_) {
-        if (!joins_[i] || all.a > holds_[i]) continue;
-        joins_[i] = false;
-        again = true;
-      }
-      if (again) all = joined_with_all(side);
-    }
+  bool join_most(const Motion& motion, const Real& side, const Joined& all) {
     chattering_.clear();
     for (std::size_t i = 0; i < masses_.size(); ++i)
       if (joins_[i]) chattering_.push_back(bounces_of(i, all));
@@ -495,7 +502,7 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
                m4 = motion.primary().bound(4, span);
     Real slowest{0};  // of those that are held and can be kicked off their walls
     for (std::size_t i = 0; i < masses_.size(); ++i) {
-      if (!masses_.held[i] || !on_wall(i) || !(all.a > holds_[i])) continue;
+      if (!masses_.held[i] || !on_wall(i) || masses_.away[i] != side) continue;
       const Real its = bounces_of(i, all).per_speed;
       if (slowest < its) slowest = its;
     }
@@ -522,7 +529,7 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
       if (8 * sums.moves <= epsilon * (absolute(x_) + speed * lasts) && lasts < span &&
           (alone || lasts <= tolerance_) && changes <= tolerance_ * sums.margin && changes <= sums.holding &&
           (speed > turns || 2 * lasts <= epsilon * tracker_.now()) && 2 * lasts <= others_meet) {
-        join(count, Real(sums.momentum / (mass_ + sums.mass)));
+        join(count, all, Real(sums.momentum / (mass_ + sums.mass)));
         return true;
       }
       const std::size_t i = chattering_[count - 1].index;  // from now on this one is left out, too
@@ -548,27 +555,29 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
       all.given_speed += nu / (1 + nu) * (1 + e) * each.landing / each.lost;
       if (longest < each.lasts) all.longest = each.lasts;
       if (slowest < each.per_speed) all.slowest = each.per_speed;
-      if (a - friction[i] < margin) all.margin = a - friction[i];
-      if (a - holds[i] < holding) all.holding = a - holds[i];
+      if (a > holds[i] && a - friction[i] < margin) all.margin = a - friction[i];
+      if (absolute(a - holds[i]) < holding) all.holding = absolute(a - holds[i]);
       return all;
     }
   };
   // Joins the first `count` masses of chattering_ to the primary mass; `jump` is that of x'.
-  void join(std::size_t count, const Real& jump) {
+  void join(std::size_t count, const Joined& all, const Real& jump) {
     for (std::size_t n = 0; n < count; ++n) {
       const Chattering& each = chattering_[n];
       const std::size_t i = each.index;
+      const bool bounces = all.a > holds_[i];
       if (observer_.wants_energy()) {
         const Real w = masses_.w(i), loss = masses_.nu[i] * w * (w - jump) / 2;  // (M17.7)
         const Real by_friction = loss * each.by_friction;
         lost_[i].advance(by_friction);
         losses_ += loss - by_friction;
         energy_of(i).bounce_down_loss += double(Real(loss - by_friction));
-        ++energy_of(i).bounce_downs;
+        energy_of(i).bounce_downs += bounces;
         observer_.energy_balance().bounce_down_loss += double(Real(loss - by_friction));
-        ++observer_.energy_balance().bounce_downs;
+        observer_.energy_balance().bounce_downs += bounces;
       }
-      masses_.u[i] = masses_.u1[i] = 0;
+      masses_.u[i] = bounces ? Real(0) : each.top;
+      masses_.u1[i] = 0;
       settles_[i] = each.lasts;
       joins_[i] = true;
     }
