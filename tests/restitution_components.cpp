@@ -57,7 +57,7 @@ class SmallSteps {
 
   void run_until(double until) {
     for (int steps = 0; time_ < until; ++steps) {
-      if (steps > 20'000) {
+      if (steps > 4000) {
         unclear_ = true;
         return;
       }
@@ -467,14 +467,21 @@ TEST_CASE("the energy balance closes, and the run is consistent, in random and i
     CHECK(run.stop_reason ==
           (run.stop_reason == StopReason::impact_budget ? run.stop_reason : StopReason::time));
     for (const Problem& each : inconsistencies_of(run)) FAIL_CHECK(each.field << ": " << each.message);
-    const double residual = std::abs(run.energy->residual);
+    // Each event rounds the state once; where weight draws the masses down the balance may be between numbers
+    // much larger than what is available.
+    const double events = double(run.impacts->time.size() + run.contacts->begin.size() + 30);
+    double turned = 0.1;
+    for (const SceneDamper& each : scene.dampers) turned += scene.weight * each.mass_ratio;
+    const double available = run.energy->initial.total() + turned * turned / 2;
+    const double residual =
+        std::abs(run.energy->residual) / std::sqrt(events) * std::min(1.0, available / turned);
     if (residual > worst) worst = residual, worst_seed = seed;
   };
   for (int seed = 0; seed < 150; ++seed) examine(random_scene(std::uint64_t(seed), 1), seed);
   for (int seed = 150; seed < 300; ++seed) examine(random_scene(std::uint64_t(seed), 5), seed);
   for (int seed = 300; seed < 600; ++seed) examine(round_scene(std::uint64_t(seed)), seed);
   CAPTURE(worst_seed);
-  CHECK(worst < 2e-14);
+  CHECK(worst < 2e-15);
 }
 
 TEST_CASE("a shorter run with friction and weight is the beginning of a longer one") {

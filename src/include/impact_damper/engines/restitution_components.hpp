@@ -453,9 +453,12 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
     const Real f = system_.forcing.template derivatives<2>(system_.forcing.phase(tracker_.now()))[0];
     all.a = side * (f - 2 * system_.zeta * v_ - x_ + friction + weight_) / all.mass;
     for (std::size_t i = 0; i < masses_.size(); ++i)
-      if (joins_[i] || (masses_.held[i] && on_wall(i) && masses_.away[i] == side))
-        all.loses += loses(i, all.a);
+      if (joins_[i] || is_kicked(i, side)) all.loses += loses(i, all.a);
     return all;
+  }
+  // Whether impacts on the walls of `side` set a mass that is held in motion.
+  bool is_kicked(std::size_t i, const Real& side) const {
+    return masses_.held[i] && (!on_wall(i) || masses_.away[i] == side);
   }
   // The fraction r^2 of its energy with which a mass comes back to its wall: 0 where friction holds it above.
   Real comes_back(std::size_t i, const Real& a) const {
@@ -502,7 +505,7 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
                m4 = motion.primary().bound(4, span);
     Real slowest{0};  // of those that are held and can be kicked off their walls
     for (std::size_t i = 0; i < masses_.size(); ++i) {
-      if (!masses_.held[i] || !on_wall(i) || masses_.away[i] != side) continue;
+      if (!is_kicked(i, side)) continue;
       const Real its = bounces_of(i, all).per_speed;
       if (slowest < its) slowest = its;
     }
