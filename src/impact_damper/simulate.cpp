@@ -12,6 +12,7 @@ Outcome recorded(const Checked& run, const Exact&, Recorder& recorder) {
 }
 
 Outcome recorded(const Checked& run, const Restitution&, Recorder& recorder) {
+  if (has_components(run.scene())) return run_restitution_with_components<double>(run, recorder);
   return has_one_damper(run.scene()) ? run_restitution<double>(run, recorder)
                                      : run_restitution_dampers<double>(run, recorder);
 }

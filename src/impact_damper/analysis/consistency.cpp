@@ -597,13 +597,15 @@ class Examination {
     const double lost = balance.impact_loss_total() + balance.contact_loss + balance.bounce_down_loss +
                         balance.viscous_work + balance.friction_loss + balance.drag_loss;
     const double open = (begin + put_in) - (end + lost);
+    const double sunk = cem_ ? 0 : scene_.weight * secondary_mass(scene_),
+                 available = begin + sunk * sunk / 2;
     const double push = std::abs(scene_.force_amplitude) * run_.end_time / std::sqrt(2.0);
-    const double root = push + std::sqrt(push * push + begin);
-    const double least = cem_ ? std::max({begin, end, std::abs(put_in)}) : begin + std::abs(put_in);
+    const double root = push + std::sqrt(push * push + available);
+    const double least = cem_ ? std::max({begin, end, std::abs(put_in)}) : available + std::abs(put_in);
     // The energy of the component element method has an error of the order of the step.
-    const double bound = scene_.force_amplitude == 0 ? begin : root * root;
+    const double bound = scene_.force_amplitude == 0 ? available : root * root;
     const double most = cem_ ? 2 * std::max(bound, least) : bound;
-    double handled = begin + std::abs(put_in) + end + std::abs(balance.contact_loss) +
+    double handled = std::abs(begin) + std::abs(put_in) + std::abs(end) + std::abs(balance.contact_loss) +
                      std::abs(balance.bounce_down_loss) + std::abs(balance.viscous_work) +
                      std::abs(balance.friction_loss) + std::abs(balance.drag_loss);
     for (const double loss : losses) handled += std::abs(loss);

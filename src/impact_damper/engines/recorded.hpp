@@ -7,6 +7,7 @@
 #include "impact_damper/engines/exact_dampers.hpp"
 #include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/engines/restitution.hpp"
+#include "impact_damper/engines/restitution_components.hpp"
 #include "impact_damper/engines/restitution_dampers.hpp"
 
 namespace impact_damper {
@@ -29,6 +30,7 @@ extern template Outcome run_restitution(const ForcedSystem&, const Scene&, const
 extern template Outcome run_restitution_dampers<double>(const Checked&, Recorder&);
 extern template Outcome run_restitution_dampers(const ForcedSystem&, const Scene&, const Restitution&,
                                                 Recorder&);
+extern template Outcome run_restitution_with_components<double>(const Checked&, Recorder&);
 extern template Outcome run_cem<double>(const Checked&, Recorder&);
 extern template Outcome run_cem_dampers<double>(const Checked&, Recorder&);
 

@@ -183,6 +183,8 @@ std::vector<Problem> problems_of(const Scene& scene, const Engine& engine) {
     problems.push_back({"engine", "must be exact or restitution, got cem"});
   } else if (problems.empty()) {
     problems = incompatibilities_of(scene, engine);
+    if (problems.empty() && has_components(scene))
+      problems.push_back({"friction", "must be 0 for steady states, as static_friction and weight"});
   }
   if (scene.force_amplitude == 0)
     problems.push_back({"force_amplitude", "must not be 0: without a force there is no steady motion"});

@@ -103,7 +103,8 @@ struct EnergyBalance {
   double viscous_work = 0;                  // taken out by the primary mass's damper, integral of 2 zeta v^2
   double forcing_work = 0;                  // put in by the forcing, integral of f0 sin(omega_f t) v
   // The residual of the balance: left minus right side of the equation above, divided by the sum of the
-  // initial energy and the integral of the forcing's |power|; 0 if that sum is 0.
+  // initial energy, counted with weight from the least there is, and the integral of the forcing's |power|; 0
+  // if that sum is 0.
   double residual = 0;
   double friction_loss = 0, drag_loss = 0;  // of all dampers
   // Integral of f0 cos(omega_f t) v, by the exact and restitution engines. With forcing_work it determines

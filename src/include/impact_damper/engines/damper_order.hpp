@@ -20,7 +20,8 @@ inline std::vector<std::int32_t> damper_order(std::span<const SceneDamper> dampe
   std::sort(order.begin(), order.end(), [&](std::int32_t one, std::int32_t other) {
     const auto key = [&](std::int32_t i) {
       const SceneDamper& d = dampers[i];
-      return std::tuple(d.clearance, d.mass_ratio, d.restitution, d.y0, d.w0, d.wall_stiffness, i);
+      return std::tuple(d.clearance, d.mass_ratio, d.restitution, d.y0, d.w0, d.wall_stiffness, d.friction,
+                        d.static_friction, d.drag, i);
     };
     return key(one) < key(other);
   });

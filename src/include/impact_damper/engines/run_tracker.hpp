@@ -135,7 +135,9 @@ class RunTracker {
     balance.viscous_work = double(viscous_);
     balance.forcing_work = double(forcing_);
     balance.reactive_work = double(reactive_);
-    const Real handled = balance.initial.total() + turnover_;
+    // Counted from the least energy that there is: the weight draws x down to -gamma sigma at y = 0.
+    const Real sunk = Real(scene_.weight) * Real(secondary_mass(scene_));
+    const Real handled = balance.initial.total() + sunk * sunk / 2 + turnover_;
     const Real open = (balance.initial.total() + forcing_) - (balance.final.total() + losses + viscous_);
     balance.residual = handled > 0 ? double(open / handled) : 0.0;
   }
