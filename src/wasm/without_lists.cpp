@@ -23,6 +23,8 @@ Outcome run_exact_dampers(const Checked& run, Observer& observer);
 template <Scalar Real, DampersObserver Observer>
 Outcome run_restitution_dampers(const Checked& run, Observer& observer);
 template <Scalar Real, DampersObserver Observer>
+Outcome run_restitution_with_components(const Checked& run, Observer& observer);
+template <Scalar Real, DampersObserver Observer>
 Outcome run_cem_dampers(const Checked& run, Observer& observer);
 
 template <>
@@ -31,6 +33,10 @@ Outcome run_exact_dampers<double>(const Checked&, Recorder&) {
 }
 template <>
 Outcome run_restitution_dampers<double>(const Checked&, Recorder&) {
+  refuse();
+}
+template <>
+Outcome run_restitution_with_components<double>(const Checked&, Recorder&) {
   refuse();
 }
 template <>

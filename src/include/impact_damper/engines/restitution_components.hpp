@@ -3,9 +3,9 @@
 //
 // Each secondary mass slides, with a constant force of friction on it, or is held: on a wall or, by friction,
 // anywhere in its cavity. Between two events the primary mass and those that are held are one oscillator
-// about a shifted position of rest (M20.1), and every distance in a cavity is a parabola less the departure
-// of x from its straight line (M20.2). Events are impacts, stops (y' falls through zero), and ends of holding
-// (x'' leaves the band of M20.3). All are found by Lemma L1 among all masses at once (first_of_many.hpp).
+// about a shifted position of rest (M18.7), and every distance in a cavity is a parabola less the departure
+// of x from its straight line (M18.8). Events are impacts, stops (y' falls through zero), and ends of holding
+// (x'' leaves the band of M18.9). All are found by Lemma L1 among all masses at once (first_of_many.hpp).
 //
 // After each event settle() decides anew who is held. A decision and the search that follows it must not
 // contradict each other by rounding, or the run would stay where it is: settle() counts x'' as being at the
@@ -258,7 +258,7 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
     v_ = now.v;
     return stopped;
   }
-  // By how much u and u' of a mass that slides have grown at t (M20.2).
+  // By how much u and u' of a mass that slides have grown at t (M18.8).
   std::array<Real, 2> gained(std::size_t i, const Real& t, const Displacement<Real>& now) const {
     const Real k = pull(i), &away = masses_.away[i];
     return {masses_.u1[i] * t - away * (now.dx + k * t * t / 2), -away * (now.dv + k * t)};
@@ -297,8 +297,8 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
   }
 
   // Decides who is held: of the masses at rest all that R = -(x'' + gamma), computed with all of them held,
-  // does not move (M20.3). Who is let go makes |x'' + gamma| larger, and leaves its sign, so those that have
-  // to go are the same in whatever order they go, and each pass lets all go that exceed their bound (20.2).
+  // does not move (M18.9). Who is let go makes |x'' + gamma| larger, and leaves its sign, so those that have
+  // to go are the same in whatever order they go, and each pass lets all go that exceed their bound (18.5).
   // Then takes the limit of masses whose chattering is over soon.
   void settle() {
     settle_at_rest();
@@ -397,10 +397,10 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
       masses_.held[i] = false;  // by friction: no contact with a wall
   }
 
-  // A mass that bounces down under (M20.4).
+  // A mass that bounces down under (M18.10), for the time (M18.11).
   struct Chattering {
     std::size_t index;
-    Real lasts;        // T_i of (M20.6)
+    Real lasts;        // T_i of (M18.12)
     Real per_speed;    // duration of all bounces, divided by the speed with which they begin
     Real lost;         // lambda_i, the fraction of its speed that a bounce takes
     Real landing;      // the speed with which it comes back to its wall
@@ -409,7 +409,7 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
     Real by_friction;  // the fraction of its energy that friction takes
   };
   // Finds the masses whose bounces are over before anything else happens, and move x by less than rounding,
-  // and joins them to the primary mass (20.3). Returns whether there are any.
+  // and joins them to the primary mass (18.5). Returns whether there are any.
   bool take_limits() {
     const Acceleration now = acceleration();
     if (!(absolute(now.value) > now.error)) return false;
@@ -611,7 +611,7 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
   std::vector<Real> settles_;           // how long chattering lasts whose limit has just been taken
   std::vector<Clock<Real>> lost_;       // by friction: a sum of many small terms, as time is
   std::vector<char> stays_, joins_;
-  Real held_mass_{0}, by_friction_{0}, rest_{0};  // sigma, sum of nu phi sgn w, F of (M20.1)
+  Real held_mass_{0}, by_friction_{0}, rest_{0};  // sigma, sum of nu phi sgn w, F of (M18.7)
   Real mass_{1};                                  // 1 + sigma
   std::optional<Driven<Real, Force>> joined_;     // the oscillator of this mass, if anything is held
   std::vector<Watched> watched_;
