@@ -280,12 +280,16 @@ TEST_CASE("components: exact data end every run") {
 TEST_CASE("components: an engine without them names the one that has them") {
   Scene scene{.weight = 0.5, .until_time = 1};
   scene.damper().friction = 0.1;
-  for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})}) {
-    const std::string message = rejection_of<InvalidArguments>([&] { simulate(scene, engine, {}); });
-    CHECK(contains(message, "friction: must be 0 with the"));
-    CHECK(contains(message, "weight: must be 0 with the"));
-    CHECK(contains(message, "cem"));
-  }
+  scene.damper().drag = 0.2;
+  const auto told = [&](const Engine& engine) {
+    return rejection_of<InvalidArguments>([&] { simulate(scene, engine, {}); });
+  };
+  const std::string of_both = ": the cem and restitution engines have friction and weight";
+  CHECK(contains(told(Exact{}), "friction: must be 0 with the exact engine, got 0.1" + of_both));
+  CHECK(contains(told(Exact{}), "weight: must be 0 with the exact engine, got 0.5" + of_both));
+  for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})})
+    CHECK(contains(told(engine), "engine, got 0.2: only the cem engine has drag"));
+  CHECK(!contains(told(Restitution{}), "friction"));
   CHECK(contains(rejection_of<InvalidArguments>([&] { simulate(scene, Cem{.large_step = 0.01}, {}); }),
                  "large_step: must be absent beside friction, weight and drag"));
   scene.damper().static_friction = 0.05;
