@@ -254,7 +254,8 @@ std::string cavity_sentences(const Findings& findings) {
   const Quantities quantities(subject.scales);
   const double omega = findings.forced() ? scene.force_frequency : 1 / std::sqrt(1 + secondary_mass(scene));
   const auto locking = [&](double most) { return quantities.length(locking_amplitude(omega, most)); };
-  const std::string damps_nothing = " the primary mass swings with it and is not damped by it";
+  const std::string them = findings.several() ? "them" : "it";
+  const std::string damps_nothing = " the primary mass swings with " + them + " and is not damped by " + them;
   if (has_components(scene)) {
     double least = std::numeric_limits<double>::infinity();
     for (const SceneDamper& damper : scene.dampers)
@@ -265,25 +266,24 @@ std::string cavity_sentences(const Findings& findings) {
                                               : "the secondary mass at rest in its cavity:") +
                           damps_nothing + ".");
   }
-  std::string text =
-      "It is assumed that the secondary mass moves in a level cavity without friction, as on rollers or on a "
-      "thread. ";
+  const std::string they = findings.several() ? "they" : "it";
+  std::string text = findings.several() ? "It is assumed that the secondary masses move in level cavities"
+                                        : "It is assumed that the secondary mass moves in a level cavity";
+  text += " without friction, as on rollers or on a thread. ";
+  const std::string with_engine = " with <code>--engine restitution</code> or <code>cem</code> compute more.";
   if (subject.scales) {
     const double g = standard_gravity / subject.scales->of(Dimension::acceleration);
-    text +=
-        "As a block that slides with a coefficient of friction of 0.1, 0.2 or 0.3 it would be held in the "
-        "cavity below an amplitude of " +
-        locking(0.1 * g) + ", " + locking(0.2 * g) + " or " + locking(0.3 * g) +
-        ", and in an upright cavity it would not leave the floor below " + locking(g) + ":" + damps_nothing +
-        " there. <code>friction_coefficient</code> and <code>inclination</code> in "
-        "the scene, with <code>--engine cem</code>, compute more.";
+    text += "If " + they + " slid with a coefficient of friction of 0.1, 0.2 or 0.3, " + they +
+            " would be held there below an amplitude of " + locking(0.1 * g) + ", " + locking(0.2 * g) +
+            " or " + locking(0.3 * g) + ", and would not leave the floor of an upright cavity below " +
+            locking(g) + ":" + damps_nothing +
+            " there. <code>friction_coefficient</code> and <code>inclination</code> in the scene," +
+            with_engine;
   } else {
-    text +=
-        "With a friction φ between them, divided by the mass and by εΩ², it would be held there below an "
-        "amplitude of about φε:" +
-        damps_nothing +
-        ". <code>--friction</code> and <code>--weight</code>, with "
-        "<code>--engine cem</code>, compute more.";
+    text += "With a friction φ, divided by the mass and by εΩ², " + they +
+            " would be held there below an amplitude of " +
+            (findings.forced() ? "φε/ω<sup>2</sup>" : "about φε") + ":" + damps_nothing +
+            ". <code>--friction</code> and <code>--weight</code>" + with_engine;
   }
   return paragraph_html(text);
 }
