@@ -1,5 +1,5 @@
 // The restitution engine for scenes with friction, static friction or weight (docs/mathematics.md, chapter
-// 20): rigid walls, one or several dampers.
+// 18): rigid walls, one or several dampers.
 //
 // Each secondary mass slides, with a constant force of friction on it, or is held: on a wall or, by friction,
 // anywhere in its cavity. Between two events the primary mass and those that are held are one oscillator
