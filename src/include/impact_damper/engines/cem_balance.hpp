@@ -76,14 +76,14 @@ class CemBalance {
   // Begins a segment at `time`, in the state s.
   void open(const Real& time, const State& s) {
     add_powers(-steps_.h() / 2, time, s);
-    for (std::size_t i = 0; masses_.components && i < masses_.size(); ++i)
+    for (std::size_t i = 0; masses_.has_components() && i < masses_.size(); ++i)
       masses_[i].slid_from = masses_.y(s, i);
   }
   // Ends it at a time in its last step.
   void close(const Real& at) {
     if (!balance_) return;
     add_sums();
-    for (std::size_t i = 0; masses_.components && i < masses_.size(); ++i) {
+    for (std::size_t i = 0; masses_.has_components() && i < masses_.size(); ++i) {
       auto& m = masses_[i];
       const Real y = m.origin_of_q() + m.arc(steps_.h()).at(at);
       if (!m.stuck) m.friction_loss += m.nu * m.friction * (m.slides * (y - m.slid_from));

@@ -42,8 +42,8 @@ class CemChanges {
       const auto& m = masses_[i];
       finite = finite && std::isfinite(double(m.now.x));
       if (m.stuck) {
-        if (const auto at = parting(m)) all_.push_back({i, *at, false, masses_.components});
-      } else if (masses_.components && !m.slides_on(m.before.dx, m.now.dx)) {
+        if (const auto at = parting(m)) all_.push_back({i, *at, false, masses_.has_components()});
+      } else if (masses_.has_components() && !m.slides_on(m.before.dx, m.now.dx)) {
         all_.push_back({i, m.arc(steps_.h()).extremum(Real(0), steps_.h()), false, true});
       }
       if (!(m.now.x >= m.least && m.now.x <= m.most)) all_.push_back({i, wall_crossing(m)});

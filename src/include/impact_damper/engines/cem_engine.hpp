@@ -112,18 +112,20 @@ class CemEngine {
   // Begins the run in the state s, with y instead of q.
   void begin(State s) {
     const auto [second, third] = masses_.begin_contacts(s, steps_.h(), joins_);
-    if (masses_.components) masses_.hold(Real(0), s, {});
+    if (masses_.has_components()) masses_.hold(Real(0), s, {});
     begin_segment(Real(0), s);
     const Real second_of_x = masses_.second_of_x(Real(0), s);
     bool impact_at_once = false;
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       if (masses_.rests(s, i) && !masses_[i].stuck)
-        steps_.lead_from_rest(i, masses_.components ? masses_.second_of_q(s, i, second_of_x) : second, third);
+        steps_.lead_from_rest(i, masses_.has_components() ? masses_.second_of_q(s, i, second_of_x) : second,
+                              third);
       impact_at_once = impact_at_once || masses_.meets_wall(s, i);
     }
     // A force moves a primary mass at rest in the middle by x''' h^3/6, which the second-order start leaves
     // out, too. It is added, unless an impact moves the mass.
-    const bool moved_by_force = s.x == 0 && s.v == 0 && second == 0 && !impact_at_once && !masses_.components;
+    const bool moved_by_force =
+        s.x == 0 && s.v == 0 && second == 0 && !impact_at_once && !masses_.has_components();
     if (moved_by_force) steps_.lead_x_by(masses_.force.amplitude * masses_.force.frequency);
 
     half_cycles_.take_side(sign(s.x != 0 ? s.x : s.v));
@@ -185,7 +187,7 @@ class CemEngine {
 
     // Where masses join or part, the motion begins anew, with or without `locate`.
     bool restart = locate_ && !changes_.all().empty();
-    if ((joins_ || masses_.components) && changes_.find_joining()) restart = true;
+    if ((joins_ || masses_.has_components()) && changes_.find_joining()) restart = true;
     bool slows_down = false;
     std::optional<State> anew;
     if (restart) {
@@ -282,11 +284,11 @@ class CemEngine {
       s = rates_.of_scheme(std::move(s), time, steps_.h());
     }
     trend_ = sign(s.v);
-    if (masses_.components) masses_.hold(time, s, parted);
+    if (masses_.has_components()) masses_.hold(time, s, parted);
     begin_segment(time, s);
     for (const std::size_t i : parted) {
       const Real second = masses_.second_of_x(time, s);
-      masses_.components
+      masses_.has_components()
           ? steps_.lead_from_rest(i, masses_.second_of_q(s, i, second), masses_.third_where_freed(time, s))
           : steps_.lead_from_rest(i, -second, masses_.third_of_y(time, s));
     }

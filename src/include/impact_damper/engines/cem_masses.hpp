@@ -79,7 +79,7 @@ struct CemMasses {
       : zeta(scene.damping_ratio),
         force{Real(scene.force_amplitude), Real(scene.force_frequency)},
         weight(scene.weight),
-        components(!one && has_components(scene)) {
+        components_(impact_damper::has_components(scene)) {
     const auto keep = [&](std::size_t place, std::int32_t number) {
       const SceneDamper& its = scene.dampers[number];
       const auto wall = regime_equations<Real>(scene, its, options.calibration, Regime::contact);
@@ -106,6 +106,8 @@ struct CemMasses {
     }
   }
 
+  // Whether the scene has friction, drag or weight. With ForOne it has not.
+  bool has_components() const { return !one && components_; }
   std::size_t size() const { return all.size(); }
   const CemMass<Real>& operator[](std::size_t i) const { return all[i]; }
   CemMass<Real>& operator[](std::size_t i) { return all[i]; }
@@ -135,7 +137,7 @@ struct CemMasses {
     if (!wall || stuck) m.dq_dq = m.dq_dx = Real(!stuck), m.dq_q = m.dx_dq = m.dx_q = 0;
     m.least = !wall || stuck ? Real(0) : wall == Wall::left ? -infinity : smallest;
     m.most = !wall ? m.clearance : stuck ? Real(0) : wall == Wall::left ? -smallest : infinity;
-    if (!components) {
+    if (!has_components()) {
       m.least_second = wall == Wall::left ? Real(0) : -infinity;
       m.most_second = wall == Wall::left ? infinity : Real(0);
     } else if (stuck) {  // held by friction, wherever it is
@@ -208,7 +210,7 @@ struct CemMasses {
       begin_contact(i, s.q[i] < 0                  ? std::optional(Wall::left)
                        : s.q[i] > all[i].clearance ? std::optional(Wall::right)
                                                    : std::nullopt);
-    if (components) hold(Real(0), s, {});
+    if (has_components()) hold(Real(0), s, {});
     const Real second = -(second_of_x(Real(0), s) + weight), third = s.v - force.amplitude * force.frequency;
     const Lead<Real> lead = lead_of_x(Real(2 * zeta), Real(1), force, force.phase(Real(0)), s.x, s.v);
     const bool by_lead = joins && lead.order > 3 && coupled.empty();
@@ -240,7 +242,7 @@ struct CemMasses {
   // The force R of (M18.1) on the primary mass, divided by the secondary mass; 0 if that is stuck.
   Real force_of(const State& s, std::size_t i) const {
     const CemMass<Real>& m = all[i];
-    if (!components) return wall_force(s, i);
+    if (!has_components()) return wall_force(s, i);
     return m.stuck ? Real(0) : m.resistance() * s.w[i] + m.spring() * s.q[i] + m.friction * m.slides;
   }
   // The sum of the primary mass and all masses at walls, divided by the primary mass.
@@ -255,9 +257,9 @@ struct CemMasses {
   }
   // x'' by (M17.9), with components by (M18.3), with `mass` for the primary mass and the masses joined to it.
   Real second_of_x(const Real& time, const State& s, const Real& mass) const {
-    if (mass > 1 && coupled.empty() && !components) return second_as_one(time, s, mass);
+    if (mass > 1 && coupled.empty() && !has_components()) return second_as_one(time, s, mass);
     Real sum = force_at(time);
-    if (components) {
+    if (has_components()) {
       for (std::size_t i = 0; i < size(); ++i) sum += all[i].nu * force_of(s, i);
       sum -= (mass - 1) * weight;
     } else {
@@ -288,12 +290,14 @@ struct CemMasses {
   Real zeta;
   Forcing<Real> force;
   Real weight;                 // gamma
-  bool components;             // whether the scene has friction, drag or weight
   ForEach<CemMass<Real>> all;  // in the order of damper_order.hpp
   // Masses in contact or with drag, on which a force of q or q' acts, that are not stuck; ascending.
   std::vector<std::size_t> coupled;
   Real joined = 1;                     // the primary mass and those stuck to it, divided by the first
   Real least_second{}, most_second{};  // limits of x'' while these stay stuck
+
+ private:
+  bool components_;
 };
 
 }  // namespace impact_damper

@@ -92,11 +92,11 @@ class CemSteps {
       const Real h = pace_.h, outer = h * masses_.zeta, h_2 = h * h, joined = masses_.joined;
       const auto ahead = [&](const auto& m) {
         const Real of_wall = centred_ ? h * m.c / 2 : Real(0);
-        return masses_.components ? (m.wall ? of_wall : Real(0)) + h * m.drag / 2 : of_wall;
+        return masses_.has_components() ? (m.wall ? of_wall : Real(0)) + h * m.drag / 2 : of_wall;
       };
       const auto behind = [&](const auto& m) {
         const Real of_wall = centred_ ? h * m.c / 2 : h * m.c;
-        return masses_.components ? (m.wall ? of_wall : Real(0)) + h * m.drag / 2 : of_wall;
+        return masses_.has_components() ? (m.wall ? of_wall : Real(0)) + h * m.drag / 2 : of_wall;
       };
       Real determinant = joined + outer;
       for (const std::size_t i : masses_.coupled)
@@ -116,7 +116,7 @@ class CemSteps {
         m.dx_dq = xx * m.nu * behind(m) + xq * (1 - behind(m));
         m.dx_q = spring * (xx * m.nu - xq);
       }
-      if (!masses_.components) return;
+      if (!masses_.has_components()) return;
       Real pushes = (1 - joined) * masses_.weight;
       for (auto& m : masses_.all) {
         const Real friction = m.friction * m.slides;
@@ -155,7 +155,7 @@ class CemSteps {
       : m.wall ? choose(std::integral_constant<Regime, Regime::contact>())
                : choose(std::integral_constant<Regime, Regime::flight>());
     } else {
-      masses_.components ? take_of_all<true>(most, side, trend) : take_of_all<false>(most, side, trend);
+      masses_.has_components() ? take_of_all<true>(most, side, trend) : take_of_all<false>(most, side, trend);
     }
   }
 
