@@ -178,9 +178,10 @@ std::string scene_name_of(const Arguments& arguments) { return arguments.text("-
 void require_one_ideal_damper(const Scene& scene, const std::string& scene_file) {
   if (!has_one_damper(scene)) throw InputError(scene_file, {{"/dampers", problem_of_several().message}});
   if (has_components(scene))
-    throw InputError(scene_file, {{"",
-                                   "friction, weight and drag are not for this command, which does not take "
-                                   "them into account: leave them out"}});
+    throw InputError(scene_file.empty() ? "the scene" : scene_file,
+                     {{"",
+                       "friction, weight and drag are not for this command, which does not take "
+                       "them into account: leave them out"}});
 }
 
 void reject_options_beside_units(Arguments& arguments, const SceneFile& scene, const std::string& instead) {

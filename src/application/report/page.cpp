@@ -261,7 +261,10 @@ std::string cavity_sentences(const Findings& findings) {
     for (const SceneDamper& damper : scene.dampers)
       least = std::min(least, std::max(damper.friction, damper.static_friction) + scene.weight);
     if (least == 0) return "";
-    return paragraph_html("Below an amplitude of " + locking(least) + " friction and weight keep " +
+    const std::string what = least == scene.weight ? " its weight keeps "
+                             : scene.weight == 0   ? " friction keeps "
+                                                   : " friction and weight keep ";
+    return paragraph_html("Below an amplitude of " + locking(least) + what +
                           (findings.several() ? "all secondary masses at rest in their cavities:"
                                               : "the secondary mass at rest in its cavity:") +
                           damps_nothing + ".");

@@ -268,10 +268,21 @@ std::string decay_html(const Findings& findings) {
 std::string loss_html(const Findings& findings) {
   if (!findings.first_amplitude)
     return paragraph_html("Without half cycles there is no loss factor to read off.");
-  if (findings.best)
-    return paragraph_html(best_sentences(findings)) +
-           (findings.several() ? "" : paragraph_html(theory_sentences(findings)) + clearance_html(findings));
   const Scene& scene = findings.subject.scene;
+  const bool ideal = !has_components(scene);
+  if (findings.best) {
+    const std::string best = paragraph_html(best_sentences(findings));
+    if (!ideal)
+      return best + paragraph_html(
+                        "The closed forms for the best clearance are for a secondary mass without "
+                        "friction, weight and drag: here they recommend none.");
+    return best +
+           (findings.several() ? "" : paragraph_html(theory_sentences(findings)) + clearance_html(findings));
+  }
+  if (findings.run.impacts->time.empty() && !ideal)
+    return paragraph_html(
+        "There is no impact: what damps is viscous damping, and friction and drag in the "
+        "cavity where the secondary mass slides.");
   if (findings.run.impacts->time.empty())
     return paragraph_html("Without impacts the loss factor is that of viscous damping alone, η = 2ζ = " +
                           number_html(2 * scene.damping_ratio) + ", at every amplitude.");
@@ -459,7 +470,7 @@ std::string dampers_html(const Findings& findings) {
     const SceneDamper& damper = scene.dampers[n];
     const DamperFindings& found = findings.dampers[n];
     const double e = damper.restitution, c = damper.clearance;
-    const bool has_form = e > 0 && e < 1;
+    const bool has_form = e > 0 && e < 1 && !has_components(scene);
     const auto& [missed, for_good] = found.failure;
     const auto failed = missed ? missed : for_good;
     std::vector<std::string>& row = table.rows.emplace_back();

@@ -182,9 +182,11 @@ std::vector<Problem> problems_of(const Scene& scene, const Engine& engine) {
   if (std::holds_alternative<Cem>(engine)) {
     problems.push_back({"engine", "must be exact or restitution, got cem"});
   } else if (problems.empty()) {
-    problems = incompatibilities_of(scene, engine);
-    if (problems.empty() && has_components(scene))
-      problems.push_back({"friction", "must be 0 for steady states, as static_friction and weight"});
+    for (const auto& [name, number, least, most] : numbers_of(scene))
+      if (const double value = number.in(scene); field_of(number).component && value != 0)
+        problems.push_back({name, "must be 0, got " + number_text(value) +
+                                      ": steady motions are looked for without friction, weight and drag"});
+    if (problems.empty()) problems = incompatibilities_of(scene, engine);
   }
   if (scene.force_amplitude == 0)
     problems.push_back({"force_amplitude", "must not be 0: without a force there is no steady motion"});
