@@ -110,8 +110,8 @@ double secondary_mass(const Scene& scene) {
 std::vector<Problem> problems_of(const Scene& scene) {
   std::vector<Problem> problems;
   const auto check = [&](std::string_view name, double value, const NumberRange& range,
-                         bool component = false) {
-    const bool too_small = (range.least < 0 || component) && is_too_small(value);
+                         bool is_component = false) {
+    const bool too_small = (range.least < 0 || is_component) && is_too_small(value);
     if (range.allows(value) && !too_small) return;
     const std::string allowed = too_small ? "must be 0 or of a magnitude >= " + number_text(least_magnitude)
                                           : range.describe("must be");
