@@ -12,6 +12,7 @@
 
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/base/errors.hpp"
+#include "impact_damper/engines/recorded.hpp"
 #include "impact_damper/motion/state.hpp"
 #include "impact_damper/simulate.hpp"
 #include "rejection.hpp"
@@ -290,6 +291,13 @@ TEST_CASE("components: an engine without them names the one that has them") {
   for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})})
     CHECK(contains(told(engine), "engine, got 0.2: only the cem engine has drag"));
   CHECK(!contains(told(Restitution{}), "friction"));
+  Recorder recorder(Record{});
+  CHECK(contains(rejection_of<InvalidArguments>([&] { run_cem(checked(scene, Cem{}), recorder); }),
+                 "scene: must have no friction, drag and weight for this function"));
+  scene.damper().drag = 0;
+  const Checked rigid = checked(scene, Restitution{});
+  CHECK_THROWS_AS(run_restitution<double>(rigid, recorder), InvalidArguments);
+  CHECK_THROWS_AS(run_restitution_dampers<double>(rigid, recorder), InvalidArguments);
   CHECK(contains(rejection_of<InvalidArguments>([&] { simulate(scene, Cem{.large_step = 0.01}, {}); }),
                  "large_step: must be absent beside friction, weight and drag"));
   scene.damper().static_friction = 0.05;

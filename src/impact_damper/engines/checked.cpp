@@ -113,6 +113,12 @@ std::vector<Problem> incompatibilities_of(const Scene& scene, const Engine& engi
   return problems;
 }
 
+void require_no_components(const Scene& scene) {
+  if (has_components(scene))
+    throw InvalidArguments(
+        std::vector<Problem>{{"scene", "must have no friction, drag and weight for this function"}});
+}
+
 Checked checked(const Scene& scene, const Engine& engine, const Record& record) {
   std::vector<Problem> problems = problems_of(scene);
   const auto add_all = [&](const std::vector<Problem>& more) {

@@ -56,6 +56,7 @@ std::vector<Problem> problems_of(const Scene& scene, const Cem& options);
 // Throws NumericalError where the numbers overflow.
 template <Scalar Real = double, RunObserver Observer>
 Outcome run_cem(const Checked& run, Observer& observer) {
+  require_no_components(run.scene());
   require_arithmetic();
   return CemEngine<Real, Observer, ForOne>(run.scene(), run.options<Cem>(), observer).run();
 }

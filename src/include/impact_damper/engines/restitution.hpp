@@ -26,9 +26,10 @@
 
 namespace impact_damper {
 
-// Runs a scene without a list of dampers.
+// Runs a scene without a list of dampers, friction and weight.
 template <Scalar Real, RunObserver Observer>
 Outcome run_restitution(const Checked& run, Observer& observer) {
+  require_no_components(run.scene());
   return with_system<Real>(run.scene(), [&](const auto& system) {
     return run_restitution(system, run.scene(), run.options<Restitution>(), observer);
   });

@@ -195,9 +195,10 @@ class RestitutionOfDampers : EngineWithRigidWalls<Real, Force, Observer> {
   ChatteringLimit<Real, Force> chattering_;
 };
 
-// Runs a scene with a list of dampers.
+// Runs a scene with a list of dampers, without friction and weight.
 template <Scalar Real, DampersObserver Observer>
 Outcome run_restitution_dampers(const Checked& run, Observer& observer) {
+  require_no_components(run.scene());
   return with_system<Real>(run.scene(), [&](const auto& system) {
     return run_restitution_dampers(system, run.scene(), run.options<Restitution>(), observer);
   });
