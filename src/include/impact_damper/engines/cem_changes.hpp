@@ -107,7 +107,7 @@ class CemChanges {
   // faster, these are no longer stuck, but in contact with that wall.
   void release_other_side(std::size_t i, Wall wall, const Real& w) {
     const Real& nu = masses_[i].nu;
-    if (masses_.joined == 1 || 2 * nu / (1 + nu) * absolute(w) < Real(*stuck_speed_)) return;
+    if (!stuck_speed_ || masses_.joined == 1 || 2 * nu / (1 + nu) * absolute(w) < Real(*stuck_speed_)) return;
     for (std::size_t other = 0; other < masses_.size(); ++other)
       if (masses_[other].stuck && masses_[other].wall != wall) masses_.set_wall(other, masses_[other].wall);
   }
