@@ -97,11 +97,11 @@ struct EnergyBalance {
   Energy initial, final;
   // Loss of each impact, in the order of Impacts: with compliant walls of the whole contact that it begins.
   std::vector<double> impact_loss;
-  double contact_loss = 0;                  // compliant walls: loss in contacts that no impact began
-  std::int64_t bounce_downs = 0;            // restitution: accumulation points jumped to
-  double bounce_down_loss = 0;              // restitution: loss in the impacts jumped over
-  double viscous_work = 0;                  // taken out by the primary mass's damper, integral of 2 zeta v^2
-  double forcing_work = 0;                  // put in by the forcing, integral of f0 sin(omega_f t) v
+  double contact_loss = 0;        // compliant walls: loss in contacts that no impact began
+  std::int64_t bounce_downs = 0;  // restitution: accumulation points jumped to
+  double bounce_down_loss = 0;    // restitution: loss in the impacts jumped over
+  double viscous_work = 0;        // taken out by the primary mass's damper, integral of 2 zeta v^2
+  double forcing_work = 0;        // put in by the forcing, integral of f0 sin(omega_f t) v
   // The residual of the balance: left minus right side of the equation above, divided by the sum of the
   // initial energy, counted with weight from the least there is, and the integral of the forcing's |power|; 0
   // if that sum is 0.

@@ -77,8 +77,8 @@ double bounce_down_end(double restitution);
 
 // --- Friction and weight -----------------------------------------------------------------------------------
 // The largest amplitude at which a secondary mass that does not move in its cavity stays there (M18.4) and
-// damps nothing: omega^2 A = |x''| <= most. omega: the frequency of the motion, > 0; without damping and force
-// 1/sqrt(1 + nu). most >= 0: phi_s; on the floor of a cavity that is not level phi_s + gamma.
+// damps nothing: omega^2 A = |x''| <= most. omega: the frequency of the motion, > 0; without damping and
+// force 1/sqrt(1 + nu). most >= 0: phi_s; on the floor of a cavity that is not level phi_s + gamma.
 double locking_amplitude(double omega, double most);
 
 // Under a constant relative acceleration a > 0 into the wall and a first rebound speed w0 >= 0 the bounces
