@@ -258,8 +258,7 @@ std::string cavity_sentences(const Findings& findings) {
   const std::string damps_nothing = " the primary mass swings with " + them + " and is not damped by " + them;
   if (has_components(scene)) {
     double least = std::numeric_limits<double>::infinity();
-    for (const SceneDamper& damper : scene.dampers)
-      least = std::min(least, std::max(damper.friction, damper.static_friction) + scene.weight);
+    for (const SceneDamper& damper : scene.dampers) least = std::min(least, damper.holding() + scene.weight);
     if (least == 0) return "";
     const std::string what = least == scene.weight ? " its weight keeps "
                              : scene.weight == 0   ? " friction keeps "

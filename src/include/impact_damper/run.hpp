@@ -15,6 +15,7 @@
 namespace impact_damper {
 
 enum class Wall { left = 0, right = 1 };
+constexpr Wall opposite(Wall wall) { return wall == Wall::left ? Wall::right : Wall::left; }
 
 enum class StopReason {
   time,               // until_time was reached

@@ -36,6 +36,9 @@ struct SceneDamper {
   double static_friction = 0.0;  // phi_s, the most that holds it where it does not; 0: phi, else at least phi
   double drag = 0.0;  // d, of the force d y', linear in the relative velocity; divided by m Omega_n
 
+  // phi_s, with its default filled in.
+  double holding() const { return static_friction > 0 ? static_friction : friction; }
+
   bool operator==(const SceneDamper&) const = default;
 };
 inline constexpr std::size_t most_dampers = 1000;

@@ -84,16 +84,9 @@ struct CemMasses {
       const SceneDamper& its = scene.dampers[number];
       const auto wall = regime_equations<Real>(scene, its, options.calibration, Regime::contact);
       const double steps = nominal_contact_time(its) / double(Real(*options.time_step));
-      all[place] = {number,
-                    wall.nu,
-                    its.wall_stiffness,
-                    its.clearance,
-                    wall.c,
-                    wall.omega_2,
-                    whole_steps(steps),
-                    its.friction,
-                    std::max(its.friction, its.static_friction),
-                    its.drag};
+      all[place] = {number,        wall.nu,      its.wall_stiffness, its.clearance,
+                    wall.c,        wall.omega_2, whole_steps(steps), its.friction,
+                    its.holding(), its.drag};
     };
     if constexpr (one) {
       keep(0, 0);  // a sort of one is a sixtieth of the packed module for browsers

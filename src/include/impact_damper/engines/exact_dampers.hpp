@@ -365,7 +365,6 @@ class ExactOfDampers : EngineOfDampers<Real, Force, Observer> {
   // The end of a search for events beside one at `time`, a few roundings later: an event at the same instant
   // may come out later by that much.
   static Real just_after(const Real& time) { return time * (1 + 8 * std::numeric_limits<Real>::epsilon()); }
-  static Wall opposite(Wall wall) { return wall == Wall::left ? Wall::right : Wall::left; }
   // Adds an event to events_, which holds the earliest events known, all at the time `until`. An earlier
   // event replaces them, a later one is ignored.
   void consider(const Event& event, Real& until) {

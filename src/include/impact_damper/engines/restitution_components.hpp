@@ -47,7 +47,7 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
     for (const std::int32_t i : masses_.number) {
       const SceneDamper& damper = scene.dampers[i];
       friction_.push_back(Real(damper.friction));
-      holds_.push_back(Real(damper.static_friction > 0 ? damper.static_friction : damper.friction));
+      holds_.push_back(Real(damper.holding()));
     }
   }
 
@@ -267,8 +267,7 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
   void stop(std::size_t i) {
     masses_.u1[i] = 0;
     if (!(masses_.u[i] > 0)) masses_.u[i] = 0;
-    if (!(masses_.clearance[i] - masses_.u[i] > 0))
-      masses_.arrive(i, masses_.wall(i) == Wall::left ? Wall::right : Wall::left);
+    if (!(masses_.clearance[i] - masses_.u[i] > 0)) masses_.arrive(i, opposite(masses_.wall(i)));
   }
 
   // Sets meeting_ to the masses that meet walls now, at the end of a motion of the length t: the i-th one,
@@ -287,12 +286,10 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
                    from = near ? absolute(masses_.u[j]) : masses_.clearance[j],
                    second = most + absolute(pull(j));
         const Real way = from + (speed + second * t) * t;
-        const Real slack = 4 * std::numeric_limits<Real>::epsilon() * way / speed,
-                   keeps = speed / (4 * second);
-        if (!(distance <= (slack < keeps ? slack : keeps) * speed)) continue;
+        if (!(distance <= slack_of_instant(way, speed, second) * speed)) continue;
       }
-      const Wall home = masses_.wall(j), other = home == Wall::left ? Wall::right : Wall::left;
-      meeting_.push_back({j, t, near ? home : other, speed});
+      const Wall home = masses_.wall(j);
+      meeting_.push_back({j, t, near ? home : opposite(home), speed});
     }
   }
 

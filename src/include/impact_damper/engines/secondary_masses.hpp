@@ -132,6 +132,15 @@ struct Meeting {
   Real speed;  // relative to the wall
 };
 
+// Returns how much later than another an impact may come and still be at the same instant: the rounding of
+// the mass's distance, known by the way that it has come, divided by its speed; but no longer than it keeps
+// that speed. most: a bound on |y''|.
+template <class Real>
+Real slack_of_instant(const Real& way, const Real& speed, const Real& most) {
+  const Real slack = 4 * std::numeric_limits<Real>::epsilon() * way / speed, keeps = speed / (4 * most);
+  return slack < keeps ? slack : keeps;
+}
+
 // Finds the masses that meet walls next. The mass estimated to be the first is searched first. With its
 // impact time known, (M17.8) and Lemma L2 exclude most others. No queue is kept: an impact changes the
 // estimates of all.
@@ -195,16 +204,13 @@ class NextMeeting {
     const Real late = t + square_root(Real(2 * std::numeric_limits<Real>::epsilon() * way / most));
     return late < until ? late : until;
   }
-  // Returns how much later than another an impact may be found and still be at the same instant: the rounding
-  // of the mass's distance divided by its speed, but no longer than it keeps its speed.
+  // Returns how much later than another an impact may be found and still be at the same instant.
   Real slack_of(const SecondaryMasses<Real>& masses, const Meeting<Real>& met,
                 const ForcedMotion<Real, Force>& primary, const Search<Real>& search) {
     const Real from = met.wall == masses.wall(met.index) ? masses.u[met.index] : masses.clearance[met.index];
     const Real &t = met.time, &most = bounds(primary, search).second;
     const Real way = absolute(from) + (absolute(masses.u1[met.index]) + most * t / 2) * t;
-    const Real slack = 4 * std::numeric_limits<Real>::epsilon() * way / met.speed,
-               keeps = met.speed / (4 * most);
-    return slack < keeps ? slack : keeps;
+    return slack_of_instant(way, met.speed, most);
   }
   // Whether the i-th mass is proved to meet no wall until the earliest impact known, nor to come as near as
   // rounding.

@@ -8,6 +8,8 @@
 // exceeds them, too.
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <optional>
 #include <vector>
 

@@ -1,9 +1,11 @@
 // x of the primary mass, and of what is held by it, under a constant force beside f: the friction of masses
 // that slide, and the weight of those that are held. x - rest is the motion of ForcedMotion, `rest` being
-// where that force would hold x at rest (docs/mathematics.md, chapter 20).
+// where that force would hold x at rest (docs/mathematics.md, chapter 18).
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <optional>
 
 #include "impact_damper/motion/forced_motion.hpp"
 
