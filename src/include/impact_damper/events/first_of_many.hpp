@@ -1,11 +1,11 @@
 // The first fall through zero among many functions of one motion, several of which may be near zero at once:
-// a mass that friction stops close to a wall nears both events together. Each step is that of Lemma L1
-// (root_isolation.hpp); the root that a function's parabola shows counts once no other function can fall
-// before.
+// a mass that friction stops close to a wall is about to stop and about to meet the wall. Each step is that
+// of Lemma L1 (root_isolation.hpp). The root of a function's parabola is accepted if every other function is
+// proved to be positive until then.
 //
-// A function may begin at zero, and rounding errors then decide neither its sign nor that of its slope. It
-// has a size for these errors: as long as its value does not exceed them, it falls only with a slope that
-// exceeds them, too.
+// A function may be zero at time 0, so that rounding errors would decide its sign and that of its slope soon
+// after. Bounds of both errors are given. While the value is not below zero by more than its bound, the
+// function falls only if its slope is negative by more than its own.
 #pragma once
 
 #include <cstddef>
@@ -17,18 +17,21 @@
 
 namespace impact_damper {
 
-// How a function is watched. At the time t its value counts as zero to rounding up to noise t^order, and its
-// slope up to slope_noise t^(order-1), or slope_noise where `order` is 0. With order > 0 that holds until the
-// value has been larger once.
+// How a function is watched. `order`, 0, 1 or 2: of its zero at time 0, which is then exact, the slope of a
+// zero of order 2 too; 0 where it is not zero there. Rounding errors at the time t are at most noise t^order
+// in the value, and slope_noise t^(order-1), with order 0 slope_noise, in the slope. With order > 0 the
+// search sets both to zero once the value has exceeded its bound.
 template <class Real>
 struct Watch {
   Real begin{0};  // before this time the function is known to be positive
   int order = 0;
   Real noise{0}, slope_noise{0};
-  Real wait{0};  // of the search: how far a step goes at least while the value is zero to rounding
+  // Set by the search: its least step while the value is not positive, doubled while the value stays so.
+  Real wait{0};
 };
 
-// Whether L1's cubic, with all that helps it left out, is positive up to s.
+// Whether L1's cubic is positive up to s even without what is positive in its slope and second derivative: it
+// then decreases, so that its value at s decides. False: not shown.
 template <class Real>
 bool stays_positive(const Jet<Real>& jet, const Real& s) {
   const Real down = jet.g1 < 0 ? jet.g1 : Real(0), bends = jet.g2 < 0 ? jet.g2 : Real(0);
@@ -36,8 +39,10 @@ bool stays_positive(const Jet<Real>& jet, const Real& s) {
 }
 
 // Returns the first time in [0, horizon) at which one of the functions `watched`, which have the members of
-// Watch, falls through zero, as first_root(). at(t): the motion at t; enclose(motion at t, t, function) ->
-// the LocalEnclosure of that function for a time search.span from t on. No step depends on the horizon.
+// Watch, falls through zero, and its index; nothing if none does, or if the search has no steps left. at(t):
+// the motion at t; enclose(at(t), t, watched[i]) encloses that function for a time search.span from t on.
+// resolution, steps that are not proved, and independence of the horizon: as in first_root(). `watched` is
+// changed: it is for one search.
 template <class Real, class Watched, class At, class Enclose>
 std::optional<Root<Real>> first_of_many(std::vector<Watched>& watched, At&& at, Enclose&& enclose,
                                         const Real& horizon, Search<Real>& search, const Real& resolution) {
@@ -49,7 +54,7 @@ std::optional<Root<Real>> first_of_many(std::vector<Watched>& watched, At&& at, 
     SearchCounter<Real>::evaluation();
     auto now = at(time);
     const Real least = 2 * std::numeric_limits<Real>::epsilon() * (time + resolution);
-    Real step = most;  // none falls in it, but for those whose root is known
+    Real step = most;  // no function without a known root falls in it
     std::optional<Root<Real>> near;
     std::vector<std::size_t> waiting;
     for (std::size_t i = 0; i < watched.size(); ++i) {
@@ -64,6 +69,8 @@ std::optional<Root<Real>> first_of_many(std::vector<Watched>& watched, At&& at, 
                  noise = each.noise * (each.order > 0 ? power * time : power);
       if (each.order > 0 && jet.g > noise) each.noise = each.slope_noise = 0;
       const bool departed = jet.g <= 0;
+      const Real wait = each.wait;
+      each.wait = 0;
       if (departed) {
         const bool falls = jet.g < -noise ? jet.g1 < 0 : jet.g1 < -each.slope_noise * power;
         if (falls) return Root<Real>{time, i};
@@ -80,9 +87,8 @@ std::optional<Root<Real>> first_of_many(std::vector<Watched>& watched, At&& at, 
         if (proven_by_main > proven) proven = proven_by_main;
       }
       if (departed) {
-        if (proven < each.wait) proven = each.wait;
-        if (!(proven > least && proven > each.wait)) waiting.push_back(i);
-        each.wait = 0;
+        if (proven < wait) proven = wait;
+        if (!(proven > least && proven > wait)) waiting.push_back(i);
       }
       const auto root = departed ? std::nullopt : root_of_parabola(jet, proven, time);
       if (root && (!near || time + *root < near->time)) near = Root<Real>{time + *root, i};
