@@ -317,10 +317,8 @@ std::string energy_html(const Findings& findings) {
   if (findings.forced()) row("Brought by the exciting force", balance.forcing_work);
   row("Taken by impacts", impacts);
   row("Taken by viscous damping", balance.viscous_work);
-  if (has_components(findings.subject.scene)) {
-    row("Taken by friction in the cavity", balance.friction_loss);
-    row("Taken by drag in the cavity", balance.drag_loss);
-  }
+  if (balance.friction_loss != 0) row("Taken by friction in the cavity", balance.friction_loss);
+  if (balance.drag_loss != 0) row("Taken by drag in the cavity", balance.drag_loss);
   row("Left at the end", balance.final.total());
 
   std::string text = "There are no impacts. ";
@@ -331,10 +329,13 @@ std::string energy_html(const Findings& findings) {
                       (findings.forced() ? " and of what the force brought. " : ". ")
                 : ". ");
   return table_html(table) +
-         paragraph_html(text + (balance.residual == 0
-                                    ? "All of it adds up, to the last digit."
-                                    : "When all are added up, " + number_html(balance.residual) +
-                                          " of the energy that went through is left over: rounding."));
+         paragraph_html(
+             text + (balance.residual == 0
+                         ? "All of it adds up, to the last digit."
+                         : "When all are added up, " + number_html(balance.residual) +
+                               " of the energy that went through is left over: " +
+                               (std::holds_alternative<Cem>(findings.run.engine) ? "the error of the steps."
+                                                                                 : "rounding.")));
 }
 
 std::string loads_html(const Findings& findings) {
@@ -378,7 +379,8 @@ std::string loads_html(const Findings& findings) {
   } else if (has_rigid_walls(findings.subject.engine)) {
     text =
         "The walls of this engine are rigid and impacts take no time: the force and the duration of a "
-        "contact follow from the stiffness of the walls, with the engine <code>exact</code>. ";
+        "contact follow from the stiffness of the walls, with the engine <code>" +
+        std::string(has_components(scene) ? Cem::name : Exact::name) + "</code>. ";
   } else {
     text =
         "The walls are so soft that a contact lasts a good part of a period: there is no closed form for its "
