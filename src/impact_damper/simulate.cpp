@@ -7,6 +7,7 @@ namespace impact_damper {
 namespace {
 
 Outcome recorded(const Checked& run, const Exact&, Recorder& recorder) {
+  if (has_components(run.scene())) return run_exact_with_components<double>(run, recorder);
   return has_one_damper(run.scene()) ? run_exact<double>(run, recorder)
                                      : run_exact_dampers<double>(run, recorder);
 }

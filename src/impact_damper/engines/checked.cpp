@@ -95,15 +95,12 @@ std::vector<Problem> incompatibilities_of(const Scene& scene, const Engine& engi
   const Cem* const cem = std::get_if<Cem>(&engine);
   for (const SceneField& field : scene_fields) {
     if (!field.component || cem) continue;
-    const bool is_drag = field.number.is(&SceneDamper::drag);
-    if (std::holds_alternative<Restitution>(engine) && !is_drag) continue;
+    if (!std::holds_alternative<Restitution>(engine) || !field.number.is(&SceneDamper::drag)) continue;
     for (std::size_t i = 0; i < (field.number.of_damper ? scene.dampers.size() : 1); ++i)
       if (const double value = SceneNumber{field.number, i}.in(scene); value != 0)
         problems.push_back({one || field.number.own ? std::string(field.name) : damper_field(i, field.name),
                             "must be 0 with the " + std::string(name_of(engine)) + " engine, got " +
-                                number_text(value) +
-                                (is_drag ? ": only the cem engine has drag"
-                                         : ": the cem and restitution engines have friction and weight")});
+                                number_text(value) + ": the exact and cem engines have drag"});
   }
   if (cem && cem->time_step) problems = problems_of(scene, *cem);
   if (one && has_rigid_walls(engine) && !within(0, 1).allows(scene.damper().y0)) {

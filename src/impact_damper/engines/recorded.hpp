@@ -4,6 +4,7 @@
 
 #include "impact_damper/engines/cem.hpp"
 #include "impact_damper/engines/exact.hpp"
+#include "impact_damper/engines/exact_components.hpp"
 #include "impact_damper/engines/exact_dampers.hpp"
 #include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/engines/restitution.hpp"
@@ -25,6 +26,7 @@ extern template Outcome run_exact<ContactWithoutModes<double>>(const ForcedModes
 extern template Outcome run_exact_dampers<double>(const Checked&, Recorder&);
 extern template Outcome run_exact_dampers(const ForcedSystem&, const Scene&, const Exact&, Recorder&,
                                           const ModesOfDampers<double, Forcing<double>>&);
+extern template Outcome run_exact_with_components<double>(const Checked&, Recorder&);
 extern template Outcome run_restitution(const FreeSystem&, const Scene&, const Restitution&, Recorder&);
 extern template Outcome run_restitution(const ForcedSystem&, const Scene&, const Restitution&, Recorder&);
 extern template Outcome run_restitution_dampers<double>(const Checked&, Recorder&);

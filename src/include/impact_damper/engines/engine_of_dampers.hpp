@@ -41,6 +41,15 @@ class EngineOfDampers {
       return EnergyTerms<Real>{masses_.nu[i], masses_.w(i), wall(i)};
     });
   }
+  // Returns the energy that a weight gamma stores, counted from x = y = 0 (M18.5).
+  double energy_of_weight(const Real& gamma) const {
+    Real height{0};
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      const Real wall = masses_.away[i] > 0 ? Real(0) : masses_.clearance[i];
+      height += masses_.nu[i] * (x_ + (wall + masses_.away[i] * masses_.u[i]));
+    }
+    return double(Real(gamma * height));
+  }
   // Ends the energy balance, which must be wanted. last: the energy at the end of the run.
   void finish(const Energy& last) {
     tracker_.finish(last, losses_);

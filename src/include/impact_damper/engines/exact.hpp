@@ -23,6 +23,7 @@ namespace impact_damper {
 // Runs a scene without a list of dampers, and reports to `observer` what it asks for.
 template <Scalar Real, RunObserver Observer>
 Outcome run_exact(const Checked& run, Observer& observer) {
+  require_no_components(run.scene());
   return with_system<Real>(run.scene(), [&](const auto& system) {
     return run_exact(system, run.scene(), run.options<Exact>(), observer);
   });

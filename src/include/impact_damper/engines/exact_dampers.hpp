@@ -466,6 +466,7 @@ class ExactOfDampers : EngineOfDampers<Real, Force, Observer> {
 // Runs a scene with a list of dampers.
 template <Scalar Real, DampersObserver Observer>
 Outcome run_exact_dampers(const Checked& run, Observer& observer) {
+  require_no_components(run.scene());
   return with_system<Real>(run.scene(), [&](const auto& system) {
     return run_exact_dampers(system, run.scene(), run.options<Exact>(), observer, {});
   });

@@ -589,12 +589,7 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
 
   Energy energy_now() const {
     Energy energy = Base::energy_now([](std::size_t) { return Real(0); });
-    Real height{0};
-    for (std::size_t i = 0; i < masses_.size(); ++i) {
-      const Real wall = masses_.away[i] > 0 ? Real(0) : masses_.clearance[i];
-      height += masses_.nu[i] * (x_ + (wall + masses_.away[i] * masses_.u[i]));
-    }
-    energy.weight = double(Real(weight_ * height));
+    energy.weight = Base::energy_of_weight(weight_);
     return energy;
   }
 

@@ -1,12 +1,16 @@
 // Several secondary masses in contact with their walls at once (docs/mathematics.md, 17.5): x and each q as
 // power series in time (M17.16), in pieces so short that the terms left out are below rounding (M17.17).
 // Modes are not used: a set of masses seldom comes again, and equal dampers have equal modes.
+//
+// With components (chapter 18) the same series hold for masses that slide with friction in a wall, or in a
+// fluid, where K = 0: what is constant in a piece enters at the order 0 (M18.13).
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "impact_damper/events/exclusion.hpp"
@@ -21,8 +25,16 @@ namespace impact_damper {
 
 // The motion (motion.hpp) of one piece at a time. y and y' in its states are not used. Arguments and results
 // are in t. The series inside are in s = t/h_: their terms are h_^n/n! times the n-th derivatives by t.
-template <class Real, class Force>
-class JointContact : public ProofsByBounds<JointContact<Real, Force>, Real> {
+// What is constant in a piece with components.
+template <class Real>
+struct ConstantForces {
+  std::vector<Real> friction{};  // phi_i s_i of each mass of the series
+  Real others{0};                // sum of nu phi s over the masses that slide and are not in it
+  Real weight{0}, held{0};       // gamma, and sigma: the masses that are held
+};
+
+template <class Real, class Force, bool components = false>
+class JointContact : public ProofsByBounds<JointContact<Real, Force, components>, Real> {
  public:
   static constexpr std::size_t joint_terms = 24;
   // The first omitted term of x'' is joint_radians^(terms - 2) / (terms - 2)! of the motion: epsilon / 64, or
@@ -79,6 +91,11 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force>, Real> {
       power *= end;
     }
   }
+  // Sets what is constant in the next piece, after set_walls(): `forces` must outlive it.
+  void set_forces(const ConstantForces<Real>& forces) requires components {
+    forces_ = &forces;
+    mass_ = 1 + forces.held;
+  }
   // Begins a piece at `time` with x0 and v0. walls: those of set_walls(), with their q and q' now.
   void begin(const Real& time, const Real& x0, const Real& v0, const std::vector<PushedWall<Real>>& walls) {
     const std::size_t count = walls.size();
@@ -112,6 +129,7 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force>, Real> {
   }
 
   const Real& length() const { return length_; }
+  Real rate() const { return Real(joint_radians) / length_; }
   Displacement<Real> change(const Real& t) const {
     const SeriesAt<Real> by = Departure<Real, joint_terms / 2>{x_}.at(t * over_h_);
     const Real v0 = over_h_ * get(x_, 1), dv = over_h_ * by.u1;
@@ -129,6 +147,13 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force>, Real> {
   }
   // Returns the work of the i-th wall's damper: the integral of nu c q'^2 over [0, t].
   Real wall_work(std::size_t i, const Real& t) const {
+    Real damping = damping_[i];
+    for (const Follower& each : followers_)
+      if (each.index == i) damping = each.damping;
+    return nu_[i] * (damping * over_h_) * integral_of_ww(i, t);
+  }
+  // Returns the integral of q'^2 of the i-th mass over [0, t].
+  Real integral_of_ww(std::size_t i, const Real& t) const {
     const Terms q = terms_of(i);
     const Real half = t / 2;
     Real sum_ww{0};
@@ -138,10 +163,7 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force>, Real> {
         sum_ww += half * weight * (w * w);
       }
     }
-    Real damping = damping_[i];
-    for (const Follower& each : followers_)
-      if (each.index == i) damping = each.damping;
-    return nu_[i] * (damping * over_h_) * sum_ww;
+    return sum_ww;
   }
 
   // Evaluates each q and q' at t, and a bound on each q''''. stays(i, wall) is then whether Lemma L2 proves
@@ -189,6 +211,35 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force>, Real> {
     set(speed.terms, 0, sign * w);
     return speed;
   }
+  // Of a mass of the series, sign times the `order`-th derivative of q; of the primary mass, of x.
+  Function of_mass(std::size_t i, const Real& sign, std::size_t order) const {
+    return function(terms_of(i), sign, order);
+  }
+  Real second_of_q(std::size_t i) const { return 2 * q_[2 * nu_.size() + i] * over_h_ * over_h_; }
+  Function of_x(const Real& sign, std::size_t order) const { return function(x_, sign, order); }
+  // Adds to a function one whose n-th derivative is constant, n < 3.
+  void add(Function& g, std::size_t n, const Real& derivative) const {
+    Real term = derivative;
+    for (std::size_t k = 1; k <= n; ++k) term *= h_ / Real(double(k));
+    set(g.terms, n, get(g.terms, n) + term);
+  }
+  // The `order`-th derivative of a function at the beginning, and a bound on it in the whole piece.
+  Real begins(const Function& g, std::size_t order) const {
+    Real value = get(g.terms, order);
+    for (std::size_t k = 1; k <= order; ++k) value *= over_h_ * Real(double(k));
+    return value;
+  }
+  Real bound(const Function& g, std::size_t order) const { return bound(g.terms, order); }
+  LocalEnclosure<Real> enclosure(const Function& g, const Real& t) const {
+    const SeriesAt<Real> now = sum<Real>(g.terms, t * over_h_);
+    return {{now.u, over_h_ * now.u1, over_h_ * over_h_ * now.u2, g.third}};
+  }
+  // Whether Lemma L2 proves that a function stays positive in the whole piece.
+  bool stays(const Function& g) const {
+    const SeriesAt<Real> end = sum<Real>(g.terms, length_ * over_h_);
+    return stays_open(get(g.terms, 0), Real(over_h_ * get(g.terms, 1)), end.u, Real(over_h_ * end.u1),
+                      length_, bound(g.terms, 4));
+  }
   // Bounds on |x''| and |x'''| in the whole piece.
   Real second_of_x(const Real& = Real(0)) const { return bound(x_, 2); }
   Real third_of_x(const Real&) const { return bound(x_, 3); }
@@ -235,6 +286,7 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force>, Real> {
   Real resolution() const { return h_; }
 
  private:
+  struct Unused {};
   // Returns the rate (M17.17) of the walls with K < `follow_from`.
   static Real rate_for(const Real& zeta, const Force& forcing, const std::vector<PushedWall<Real>>& walls,
                        const Real& follow_from) {
@@ -252,6 +304,11 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force>, Real> {
   // Returns the order of the first derivative of x at the beginning, from x'' on, that is not zero (M7.12),
   // but no higher one than the series has.
   std::size_t order_of_lead() const {
+    if constexpr (components) {
+      std::size_t order = 2;
+      while (order + 2 < joint_terms && get(x_, order) == 0) ++order;
+      return order;
+    }
     std::vector<PushedWall<Real>> walls;
     for (std::size_t i = 0; i < nu_.size(); ++i)
       walls.push_back({nu_[i], spring_[i] * over_h_ * over_h_, damping_[i] * over_h_, q_[i],
@@ -280,9 +337,20 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force>, Real> {
       for (std::size_t i = 0; i < count; ++i)
         force_[i] = next * damping_[i] * rate[i] + spring_[i] * now[i];  // (M17.9)
       Real sum = f_now - 2 * zeta_ * h_ * next * x[n + 1] - h_2 * x[n];
+      if constexpr (components) {
+        if (n == 0) {
+          sum += h_2 * (forces_->others - forces_->held * forces_->weight);
+          for (std::size_t i = 0; i < count; ++i) force_[i] += h_2 * forces_->friction[i];
+        }
+      }
       for (std::size_t i = 0; i < count; ++i) sum += nu_[i] * force_[i];
-      if (!followers_.empty()) sum = (sum - pull_[n]) / mass_;
+      if constexpr (components)
+        sum /= mass_;
+      else if (!followers_.empty())
+        sum = (sum - pull_[n]) / mass_;
       x[n + 2] = sum * both;
+      if constexpr (components)
+        if (n == 0) sum += h_2 * forces_->weight;
       for (std::size_t i = 0; i < count; ++i) after[i] = -(sum + force_[i]) * both;
       const Real f_after = -angle * angle * f_now * both;
       f_now = f_next;
@@ -338,22 +406,23 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force>, Real> {
       q[n] = SimdPair<Real>{q_[2 * n * count + i], q_[(2 * n + 1) * count + i]};
     return q;
   }
-  // Returns sign times the `order`-th derivative by t of a series; order is 0 or 1.
+  // Returns sign times the `order`-th derivative by t of a series; order is 0, 1 or 2.
   Function function(const Terms& terms, const Real& sign, std::size_t order) const {
     Function g{};
-    for (std::size_t n = 0; n + order < joint_terms; ++n)
-      set(g.terms, n,
-          order == 0 ? Real(sign * get(terms, n))
-                     : Real(sign * over_h_ * (Real(double(n + 1)) * get(terms, n + 1))));
+    Real factor = sign;
+    for (std::size_t k = 0; k < order; ++k) factor *= over_h_;
+    for (std::size_t n = 0; n + order < joint_terms; ++n) {
+      const Real falling = order == 0   ? Real(1)
+                           : order == 1 ? Real(double(n + 1))
+                                        : Real(double((n + 1) * (n + 2)));
+      set(g.terms, n, factor * (falling * get(terms, n + order)));
+    }
     g.third = bound(g.terms, 3);
     g.order = order;
     return g;
   }
-  LocalEnclosure<Real> enclosure(const Function& g, const Real& t) const {
-    const SeriesAt<Real> now = sum<Real>(g.terms, t * over_h_);
-    return {{now.u, over_h_ * now.u1, over_h_ * over_h_ * now.u2, g.third}};
-  }
 
+  [[no_unique_address]] std::conditional_t<components, const ConstantForces<Real>*, Unused> forces_{};
   Real zeta_{0};
   Force forcing_{};
   SinCos<Real> phase_{};  // of the force, when the piece begins

@@ -1,0 +1,499 @@
+// The exact engine for scenes with friction, static friction, weight or drag (docs/mathematics.md, 18.6):
+// compliant walls, one or several dampers.
+//
+// Each secondary mass flies, pushes a wall, or is held by friction where it is, in flight or in its wall.
+// Between two events everything is linear with constant forces, and all move by power series, in pieces
+// (joint_contact.hpp). Events are the beginnings and ends of contacts, stops (y' falls through zero), and
+// ends of holding (M18.4). All are found by Lemma L1 among all masses at once (first_of_many.hpp).
+//
+// After each event settle() decides anew who is held. How a decision and the search that follows it are kept
+// from contradicting each other: restitution_components.hpp.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "impact_damper/base/floating_point.hpp"
+#include "impact_damper/engines/checked.hpp"
+#include "impact_damper/engines/engine_of_dampers.hpp"
+#include "impact_damper/events/first_of_many.hpp"
+#include "impact_damper/math/elementary.hpp"
+#include "impact_damper/motion/joint_contact.hpp"
+#include "impact_damper/motion/wall.hpp"
+
+namespace impact_damper {
+
+template <class Real, class Force, class Observer>
+class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
+  using Base = EngineOfDampers<Real, Force, Observer>;
+  using Base::energy_of, Base::losses_, Base::masses_, Base::observer_, Base::system_, Base::tracker_,
+      Base::v_, Base::x_;
+
+ public:
+  ExactWithComponents(const System<Real, Force>& system, const Scene& scene, const Exact& options,
+                      Observer& observer)
+      : Base(system, scene, options.budget, options.max_steps, observer),
+        lists_dampers_(!has_one_damper(scene)) {
+    forces_.weight = Real(scene.weight);
+    for (const std::int32_t number : masses_.number) {
+      const SceneDamper& damper = scene.dampers[number];
+      Mass& mass = each_.emplace_back();
+      mass.stiffness = Real(damper.wall_stiffness) / Real(damper.mass_ratio);
+      mass.damping = 2 * zeta_m<Real>(damper, options.calibration) * square_root(mass.stiffness);
+      mass.drag = Real(damper.drag);
+      mass.friction = Real(damper.friction);
+      mass.holds = Real(damper.holding());
+    }
+  }
+
+  Outcome run() {
+    const bool balance = observer_.wants_energy();
+    if (balance) Base::note_kinetic(&DamperEnergy::initial_kinetic);
+    for (std::size_t i = 0; i < masses_.size(); ++i)
+      if (masses_.u[i] < 0) enter(i);
+    if (balance) tracker_.begin(energy_now());
+    settle();
+    while (!tracker_.stopped()) {
+      begin_piece();
+      const Event event = next_event();
+      const bool stopped_by_rounding = pass(event.time);
+      if (tracker_.stopped()) break;
+      if (event.watch && !take(*event.watch)) break;
+      if (event.watch || stopped_by_rounding) settle();
+    }
+    if (balance) Base::note_kinetic(&DamperEnergy::final_kinetic);
+    const Energy last = energy_now();
+    for (std::size_t i = 0; i < masses_.size(); ++i)
+      if (masses_.held[i]) leave(i);
+    if (balance) {
+      for (std::size_t i = 0; i < masses_.size(); ++i) {
+        const Mass& mass = each_[i];
+        losses_ += mass.by_friction.now() + mass.by_drag;
+        energy_of(i).friction_loss = double(mass.by_friction.now());
+        energy_of(i).drag_loss = double(mass.by_drag);
+        observer_.energy_balance().friction_loss += energy_of(i).friction_loss;
+        observer_.energy_balance().drag_loss += energy_of(i).drag_loss;
+      }
+      Base::finish(last);
+      if (!lists_dampers_) observer_.energy_balance().dampers.clear();
+    }
+    return tracker_.outcome();
+  }
+
+ private:
+  using Piece = JointContact<Real, Force, true>;
+  using Function = typename Piece::Function;
+  struct Mass {
+    Real stiffness, damping, drag;          // K, c and d of (M18.1)
+    Real friction, holds;                   // phi and phi_s
+    bool still = false;                     // held by friction
+    Real slides{0};                         // the sign of y' where friction acts, else 0
+    std::optional<std::size_t> in_piece{};  // its index in pushed_, if it has to be in the series
+    std::optional<std::size_t> impact{};    // the one that began its contact, by index in impact_loss
+    Real work{0};                           // of its wall's damper in this contact
+    Clock<Real> by_friction{};              // lost: a sum of many small terms, as time is
+    Real by_drag{0};
+  };
+  // What falls through zero: the gap to the wall that a mass left last or to the other one, the depth in its
+  // wall, its speed, or what x'' + gamma + K q is above the lower or below the upper edge of its band.
+  enum class Kind { near_wall, far_wall, depth, stop, lower_edge, upper_edge };
+  struct Which {
+    std::size_t mass;
+    Kind kind;
+  };
+  struct Watched : Watch<Real>, Which {
+    Function function;
+  };
+  // x'' + gamma, and the error that rounding may have left in it.
+  struct Acceleration {
+    Real value, error;
+  };
+  struct Event {
+    Real time;
+    std::optional<Which> watch;  // nothing: the end of the piece or of the run
+  };
+
+  // q of (M18.1), and K q where the mass is in contact.
+  Real q(std::size_t i) const { return masses_.away[i] * masses_.u[i]; }
+  Real wall_spring(std::size_t i) const {
+    return masses_.held[i] ? Real(each_[i].stiffness * q(i)) : Real(0);
+  }
+  Real rate_damping(std::size_t i) const {
+    return masses_.held[i] ? Real(each_[i].damping + each_[i].drag) : each_[i].drag;
+  }
+  bool rests_on_wall(std::size_t i) const { return masses_.u[i] == 0 && masses_.u1[i] == 0; }
+  // The constant part of -y'' of a mass that slides and is not in the series.
+  Real pull(std::size_t i) const { return each_[i].friction * each_[i].slides + forces_.weight; }
+
+  void begin_piece() {
+    pushed_.clear();
+    forces_.friction.clear();
+    forces_.others = 0;
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      Mass& mass = each_[i];
+      mass.in_piece.reset();
+      if (mass.still) continue;
+      const Real friction = mass.friction * mass.slides, damping = rate_damping(i);
+      if (!masses_.held[i] && damping == 0) {
+        forces_.others += masses_.nu[i] * friction;
+        continue;
+      }
+      mass.in_piece = pushed_.size();
+      pushed_.push_back(
+          {masses_.nu[i], masses_.held[i] ? mass.stiffness : Real(0), damping, q(i), masses_.w(i)});
+      forces_.friction.push_back(friction);
+    }
+    piece_.set_walls(system_.zeta, system_.forcing, pushed_);
+    piece_.set_forces(forces_);
+    piece_.begin(tracker_.now(), x_, v_, pushed_);
+  }
+
+  // Returns the next event, or the end of the piece or of the run.
+  Event next_event() {
+    const Real remaining = tracker_.remaining();
+    const Real until = piece_.length() < remaining ? piece_.length() : remaining;
+    const Real resolution = watch_all();
+    Search<Real>& search = tracker_.search();
+    Search<Real> of_piece{piece_.length(), search.steps_left - 1};
+    const auto first = first_of_many<Real>(
+        watched_, [](const Real& t) { return t; },
+        [&](const Real&, const Real& t, const Watched& each) { return piece_.enclosure(each.function, t); },
+        until, of_piece, resolution);
+    search.steps_left = of_piece.steps_left;
+    if (!first) return {until, {}};
+    return {first->time, watched_[first->which]};
+  }
+  // Sets watched_ to what may end the piece. Returns the shortest time in which one of these changes.
+  Real watch_all() {
+    watched_.clear();
+    const Real noise = 4 * acceleration().error, tiny = 4 * at_edge * std::numeric_limits<Real>::epsilon();
+    const Real most_of_x = piece_.second_of_x();
+    Real resolution = piece_.resolution();
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      const Mass& mass = each_[i];
+      if (mass.still) {
+        watch_edges(i, Real(noise + tiny * (mass.holds + absolute(wall_spring(i)))));
+        continue;
+      }
+      const Real &u = masses_.u[i], &u1 = masses_.u1[i];
+      const Real k = pull(i), most = most_of_x + absolute(k);
+      // With k, of what moves by x alone: most often all events are excluded at once (M17.8).
+      if (!mass.in_piece && u1 != 0 && masses_.stays_off_walls(i, most, piece_.length(), Real(0)) &&
+          (mass.holds == 0 || absolute(u1) > most * piece_.length()))
+        continue;
+      const Real now = mass.in_piece ? absolute(piece_.second_of_q(*mass.in_piece)) : most;
+      if (u1 != 0 || u > 0) {
+        const Real changes = u1 != 0 ? Real(absolute(u1) / now) : square_root(Real(2 * absolute(u) / now));
+        if (changes < resolution) resolution = changes;
+      }
+      const int order = rests_on_wall(i) ? 2 : 0;
+      if (masses_.held[i]) {
+        watch({i, Kind::depth}, distance(i, Real(-1)), order, noise);
+      } else {
+        Function far = distance(i, Real(-1));
+        piece_.add(far, 0, masses_.clearance[i]);
+        watch({i, Kind::near_wall}, distance(i, Real(1)), order, noise);
+        watch({i, Kind::far_wall}, far, 0, noise);
+      }
+      if (mass.holds > 0) watch({i, Kind::stop}, speed(i), u1 == 0 ? 1 : 0, noise);
+    }
+    return resolution;
+  }
+  // Sign times u, the distance from the wall that a mass left last.
+  Function distance(std::size_t i, const Real& sign) const {
+    const Real &away = masses_.away[i], along = sign * away;
+    if (const auto& index = each_[i].in_piece) return piece_.of_mass(*index, along, 0);
+    Function gap = piece_.gap(Real(sign * masses_.u[i]), Real(sign * masses_.u1[i]), along);
+    piece_.add(gap, 2, Real(-along * pull(i)));
+    return gap;
+  }
+  // The speed of a mass that slides.
+  Function speed(std::size_t i) const {
+    const Real& sign = each_[i].slides;
+    if (const auto& index = each_[i].in_piece) return piece_.of_mass(*index, sign, 1);
+    Function speed = piece_.relative_velocity(masses_.w(i), sign);
+    piece_.add(speed, 1, Real(-sign * pull(i)));
+    return speed;
+  }
+  void watch_edges(std::size_t i, const Real& noise) {
+    for (const Kind edge : {Kind::lower_edge, Kind::upper_edge}) {
+      const Real side = edge == Kind::lower_edge ? Real(1) : Real(-1);
+      Function function = piece_.of_x(side, 2);
+      piece_.add(function, 0, Real(each_[i].holds + side * (forces_.weight + wall_spring(i))));
+      Watched each{{{}, 0, noise, Real(noise * piece_.rate())}, {i, edge}, function};
+      if (!piece_.stays(function)) watched_.push_back(each);
+    }
+  }
+  // Watches a function. order, if it is not 0: of its zero at the beginning. It grows for 3/2 of b/m, b and m
+  // being its (order + 1)-th derivative and a bound on the next one, so that the search begins there if its
+  // first is small (M7.4).
+  void watch(const Which& which, const Function& function, int order, const Real& noise) {
+    Watched each{{}, which, function};
+    if (order > 0) {
+      const auto n = std::size_t(order);
+      const Real next = piece_.begins(function, n + 1);
+      if (piece_.begins(function, n) < next * Real(1e-6)) {
+        const Real leaves = Real(1.5) * next / piece_.bound(function, n + 2);
+        each.begin = leaves < piece_.length() ? leaves : piece_.length();
+      }
+      each.order = order;
+      each.noise = each.slope_noise = noise;
+    } else if (piece_.stays(function)) {
+      return;
+    }
+    watched_.push_back(each);
+  }
+
+  // u and u' of a mass at the time t of the piece.
+  std::array<Real, 2> place_at(std::size_t i, const Real& t, const Displacement<Real>& now) const {
+    const Real &u = masses_.u[i], &u1 = masses_.u1[i], &away = masses_.away[i];
+    if (each_[i].still) return {u, u1};
+    if (const auto& index = each_[i].in_piece) {
+      const auto [q, w] = piece_.overlap(*index, t);
+      return {away * q, away * w};
+    }
+    const Real k = pull(i);
+    return {u + (u1 * t - away * (now.dx + k * t * t / 2)), u1 - away * (now.dv + k * t)};
+  }
+  // Advances all masses to `until`, or to an earlier stop. Returns whether rounding has turned a mass back
+  // that has just begun to slide: it then counts as at rest.
+  bool pass(const Real& until) {
+    const auto last = piece_.change(until);
+    State<Real> end{last.x, last.v, Real(0), Real(0)};
+    tracker_.pass(piece_, until, end, Real(0), [&](const Real& t) {
+      const auto now = piece_.change(t);
+      Base::report_sample(t, now, [&](auto&& set) {
+        for (std::size_t i = 0; i < masses_.size(); ++i) {
+          const auto [u, u1] = place_at(i, t, now);
+          set(i, u, u1);
+        }
+      });
+    });
+    const Real t = tracker_.passed();
+    if (t == 0) return false;
+    const auto now = t == until ? last : piece_.change(t);
+    bool stopped = false;
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      Mass& mass = each_[i];
+      if (mass.still) continue;
+      const auto [u, u1] = place_at(i, t, now);
+      if (observer_.wants_energy()) add_losses(i, t, Real(absolute(u - masses_.u[i])));
+      masses_.u[i] = u;
+      masses_.u1[i] = u1;
+      if (mass.slides == 0 || mass.slides * masses_.w(i) > 0) continue;
+      stop(i);
+      stopped = true;
+    }
+    x_ = now.x;
+    v_ = now.v;
+    return stopped;
+  }
+  // way: that the mass has gone in its cavity, in one direction if it has friction.
+  void add_losses(std::size_t i, const Real& t, const Real& way) {
+    Mass& mass = each_[i];
+    const Real& nu = masses_.nu[i];
+    if (mass.slides != 0) mass.by_friction.advance(Real(nu * mass.friction * way));
+    if (!mass.in_piece) return;
+    const Real sum_ww = piece_.integral_of_ww(*mass.in_piece, t);
+    mass.by_drag += nu * mass.drag * sum_ww;
+    if (masses_.held[i]) mass.work += nu * mass.damping * sum_ww;
+  }
+
+  // Carries out an event. Returns false if it is an impact more than the impact budget allows.
+  bool take(const Which& event) {
+    const std::size_t i = event.mass;
+    if (event.kind == Kind::depth) {
+      leave(i);
+    } else if (event.kind == Kind::stop) {
+      stop(i);
+    } else if (event.kind == Kind::near_wall || event.kind == Kind::far_wall) {
+      if (!tracker_.has_room_for(1)) return false;
+      const Wall wall = event.kind == Kind::near_wall ? masses_.wall(i) : opposite(masses_.wall(i));
+      Base::report_impact(i, wall);
+      masses_.arrive(i, wall);
+      enter(i);
+      if (observer_.wants_energy()) {
+        each_[i].impact = observer_.energy_balance().impact_loss.size();
+        observer_.energy_balance().impact_loss.push_back(0);
+      }
+    }
+    return true;
+  }
+  // Sets y' of a mass to zero. If rounding has left it beyond a wall it is on that wall.
+  void stop(std::size_t i) {
+    masses_.u1[i] = 0;
+    if (masses_.held[i]) return;
+    if (!(masses_.u[i] > 0)) masses_.u[i] = 0;
+    if (!(masses_.clearance[i] - masses_.u[i] > 0)) masses_.arrive(i, opposite(masses_.wall(i)));
+  }
+  void enter(std::size_t i) { Base::hold(i, tracker_.now()); }
+  void leave(std::size_t i) {
+    Base::let_go(i);
+    Mass& mass = each_[i];
+    if (observer_.wants_energy()) {
+      EnergyBalance& balance = observer_.energy_balance();
+      losses_ += mass.work;
+      if (mass.impact) {
+        balance.impact_loss[*mass.impact] = double(mass.work);
+        energy_of(i).impact_loss += double(mass.work);
+      } else {
+        balance.contact_loss += double(mass.work);
+        energy_of(i).contact_loss += double(mass.work);
+      }
+    }
+    mass.impact.reset();
+    mass.work = 0;
+    masses_.u[i] = 0;
+    if (masses_.u1[i] < 0) masses_.u1[i] = 0;  // by rounding
+  }
+
+  // Decides who is held (18.2): of the masses at rest all that can be. Those that cannot are let go one by
+  // one, the one with the largest excess first. Then a mass at rest on its wall enters it or leaves it.
+  void settle() {
+    forces_.held = 0;
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      Mass& mass = each_[i];
+      const Real w = masses_.w(i);
+      mass.still = w == 0 && mass.holds > 0;
+      mass.slides = mass.holds > 0 ? Real(w > 0) - Real(w < 0) : Real(0);
+      if (mass.still) forces_.held += masses_.nu[i];
+    }
+    while (const auto first = first_to_go()) {
+      each_[first->mass].still = false;
+      each_[first->mass].slides = first->direction;
+      forces_.held -= masses_.nu[first->mass];
+      if (std::ranges::none_of(each_, &Mass::still)) forces_.held = 0;
+    }
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      if (!rests_on_wall(i)) continue;
+      const Mass& mass = each_[i];
+      const Real direction = mass.still ? Real(0) : mass.slides != 0 ? mass.slides : goes(i, acceleration());
+      const bool enters = direction * masses_.away[i] < 0;
+      if (enters && !masses_.held[i]) enter(i);
+      if (!enters && masses_.held[i]) leave(i);
+    }
+  }
+  struct Going {
+    std::size_t mass;
+    Real direction, excess;
+  };
+  std::optional<Going> first_to_go() const {
+    const Acceleration now = acceleration();
+    std::optional<Going> first;
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      if (!each_[i].still) continue;
+      const Real direction = goes(i, now), excess = absolute(now.value + wall_spring(i)) - each_[i].holds;
+      if (direction != 0 && (!first || excess > first->excess)) first = Going{i, direction, excess};
+    }
+    return first;
+  }
+  // The direction in which a mass at rest is let go; 0 if it stays.
+  Real goes(std::size_t i, const Acceleration& now) const {
+    const Real spring = wall_spring(i), needs = -(now.value + spring), &holds = each_[i].holds;
+    const Real error =
+        now.error + at_edge * std::numeric_limits<Real>::epsilon() * (holds + absolute(spring));
+    for (const Real& direction : {Real(1), Real(-1)}) {
+      const Real excess = direction * needs - holds;
+      if (excess > error || (excess >= -error && direction * later() < 0)) return direction;
+    }
+    return 0;
+  }
+  Acceleration acceleration() const {
+    const Force& forcing = system_.forcing;
+    const Real f = forcing.template derivatives<2>(forcing.phase(tracker_.now()))[0], a2 = 2 * system_.zeta;
+    Real sum = f - a2 * v_ - x_ + forces_.weight,
+         size = absolute(forcing.amplitude) + a2 * absolute(v_) + absolute(x_) + forces_.weight;
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      const Mass& mass = each_[i];
+      if (mass.still) continue;
+      const Real friction = mass.friction * mass.slides, spring = wall_spring(i),
+                 damper = rate_damping(i) * masses_.w(i);
+      sum += masses_.nu[i] * (friction + spring + damper);
+      size += masses_.nu[i] * (absolute(friction) + absolute(spring) + absolute(damper));
+    }
+    const Real all = 1 + forces_.held;
+    return {sum / all, at_edge * std::numeric_limits<Real>::epsilon() * size / all};
+  }
+  // The sign of the first derivative of x from x''' on that is not zero to rounding (M7.12), 0 if there is
+  // none among the next four.
+  Real later() const {
+    const Force& forcing = system_.forcing;
+    auto [f, f1] = forcing.template derivatives<2>(forcing.phase(tracker_.now()));
+    const Real a2 = 2 * system_.zeta, tiny = at_edge * std::numeric_limits<Real>::epsilon();
+    const Acceleration now = acceleration();
+    Real amplitude = absolute(forcing.amplitude), before = v_, last = now.value - forces_.weight;
+    if (absolute(last) <= now.error + tiny * forces_.weight) last = 0;
+    struct Moving {
+      Real nu, spring, damping, q1, q2;  // q1, q2: two consecutive derivatives of q
+    };
+    std::vector<Moving> moving;
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      const Mass& mass = each_[i];
+      if (mass.still || (!masses_.held[i] && mass.drag == 0)) continue;
+      const Real damping = rate_damping(i), spring = masses_.held[i] ? mass.stiffness : Real(0),
+                 w = masses_.w(i);
+      moving.push_back({masses_.nu[i], spring, damping, w, -(last + pull(i) + damping * w + wall_spring(i))});
+    }
+    for (int n = 3; n < 7; ++n) {
+      amplitude *= forcing.frequency;
+      Real sum = f1 - a2 * last - before, size = amplitude + a2 * absolute(last) + absolute(before);
+      for (const Moving& each : moving) {
+        sum += each.nu * (each.damping * each.q2 + each.spring * each.q1);
+        size += each.nu * (absolute(each.damping * each.q2) + absolute(each.spring * each.q1));
+      }
+      if (absolute(sum) > tiny * size) return sum > 0 ? Real(1) : Real(-1);
+      for (Moving& each : moving) {
+        const Real next = -(each.damping * each.q2 + each.spring * each.q1);
+        each.q1 = each.q2;
+        each.q2 = next;
+      }
+      before = last;
+      last = 0;
+      const Real f2 = -forcing.frequency * forcing.frequency * f;
+      f = f1;
+      f1 = f2;
+    }
+    return 0;
+  }
+
+  Energy energy_now() const {
+    Energy energy = Base::energy_now([&](std::size_t i) {
+      const Real& u = masses_.u[i];
+      return masses_.held[i] ? Real(masses_.nu[i] * each_[i].stiffness * (u * u)) : Real(0);
+    });
+    energy.weight = Base::energy_of_weight(forces_.weight);
+    return energy;
+  }
+
+  // In roundings of the terms of x''.
+  static constexpr double at_edge = 8;
+
+  bool lists_dampers_;
+  std::vector<Mass> each_;
+  ConstantForces<Real> forces_;
+  std::vector<PushedWall<Real>> pushed_;
+  Piece piece_;
+  std::vector<Watched> watched_;
+};
+
+// Runs a scene that has friction, weight or drag, with one damper or a list.
+template <Scalar Real, DampersObserver Observer>
+Outcome run_exact_with_components(const Checked& run, Observer& observer) {
+  return with_system<Real>(run.scene(), [&](const auto& system) {
+    return run_exact_with_components(system, run.scene(), run.options<Exact>(), observer);
+  });
+}
+
+template <class Real, class Force, class Observer>
+Outcome run_exact_with_components(const System<Real, Force>& system, const Scene& scene, const Exact& options,
+                                  Observer& observer) {
+  require_arithmetic();
+  return ExactWithComponents<Real, Force, Observer>(system, scene, options, observer).run();
+}
+
+}  // namespace impact_damper
