@@ -87,10 +87,11 @@ inline impact_damper::Scene mirrored(impact_damper::Scene scene) {
 // no bit but the exponent.
 inline impact_damper::Scene list_of_one(impact_damper::Scene scene) {
   using impact_damper::Scene;
-  for (double Scene::*const length : {&Scene::x0, &Scene::v0, &Scene::force_amplitude}) scene.*length *= 2;
+  for (double Scene::*const length : {&Scene::x0, &Scene::v0, &Scene::force_amplitude, &Scene::weight})
+    scene.*length *= 2;
   if (scene.until_amplitude) *scene.until_amplitude *= 2;
   impact_damper::SceneDamper& its = scene.damper();
-  its.clearance *= 2, its.y0 *= 2, its.w0 *= 2;
+  its.clearance *= 2, its.y0 *= 2, its.w0 *= 2, its.friction *= 2, its.static_friction *= 2;
   return scene;
 }
 
@@ -114,13 +115,14 @@ inline impact_damper::Run in_its_own_units(impact_damper::Run run) {
   if (run.energy) {
     impact_damper::EnergyBalance& all = *run.energy;
     for (double* energy : {&all.initial.kinetic, &all.initial.spring, &all.initial.wall, &all.initial.paper,
-                           &all.final.kinetic, &all.final.spring, &all.final.wall, &all.final.paper,
-                           &all.contact_loss, &all.bounce_down_loss, &all.viscous_work, &all.forcing_work})
+                           &all.initial.weight, &all.final.kinetic, &all.final.spring, &all.final.wall,
+                           &all.final.paper, &all.final.weight, &all.contact_loss, &all.bounce_down_loss,
+                           &all.viscous_work, &all.forcing_work, &all.friction_loss, &all.drag_loss})
       *energy /= 4;
     for (double& loss : all.impact_loss) loss /= 4;
     for (impact_damper::DamperEnergy& its : all.dampers)
       for (double* energy : {&its.initial_kinetic, &its.final_kinetic, &its.impact_loss, &its.contact_loss,
-                             &its.bounce_down_loss})
+                             &its.bounce_down_loss, &its.friction_loss, &its.drag_loss})
         *energy /= 4;
   }
   return run;

@@ -84,6 +84,30 @@ class EngineOfDampers {
     v_ = now.v;
   }
 
+  // Sets `meeting` to the masses that meet walls now, at the end of a motion of the length t: the i-th one,
+  // the wall that it left last if `near`, and all in flight that rounding cannot tell apart from it (17.2).
+  // second(j): a bound on |y''|; skips(j): whether a mass is not in flight.
+  template <class Second, class Skips>
+  void find_meeting(std::vector<Meeting<Real>>& meeting, std::size_t i, bool near, const Real& t,
+                    Second&& second, Skips&& skips) const {
+    meeting.clear();
+    for (std::size_t j = 0; j < masses_.size(); ++j) {
+      if (skips(j)) continue;
+      const Real& u1 = masses_.u1[j];
+      const bool to_near = j == i ? near : u1 < 0;
+      const Real speed = absolute(u1);
+      if (j != i) {
+        if (u1 == 0) continue;
+        const Real distance = to_near ? masses_.u[j] : Real(masses_.clearance[j] - masses_.u[j]),
+                   from = to_near ? absolute(masses_.u[j]) : masses_.clearance[j], most = second(j);
+        const Real way = from + (speed + most * t) * t;
+        if (!(distance <= slack_of_instant(way, speed, most) * speed)) continue;
+      }
+      const Wall home = masses_.wall(j);
+      meeting.push_back({j, t, to_near ? home : opposite(home), speed});
+    }
+  }
+
   // Reports an impact of the i-th mass.
   void report_impact(std::size_t i, Wall wall) {
     observer_.impact(double(tracker_.now()), wall, double(masses_.w(i)), double(x_), masses_.number[i]);

@@ -63,7 +63,7 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
       const Event event = next_event();
       const bool stopped_by_rounding = pass(event.time);
       if (tracker_.stopped()) break;
-      if (event.watch && !take(*event.watch)) break;
+      if (event.watch && !take(*event.watch, event.time)) break;
       if (event.watch || stopped_by_rounding) settle();
     }
     if (balance) Base::note_kinetic(&DamperEnergy::final_kinetic);
@@ -98,6 +98,7 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
     Real work{0};                           // of its wall's damper in this contact
     Clock<Real> by_friction{};              // lost: a sum of many small terms, as time is
     Real by_drag{0};
+    Real rounding_of_w{0};  // at the end of the last piece
   };
   // What falls through zero: the gap to the wall that a mass left last or to the other one, the depth in its
   // wall, its speed, or what x'' + gamma + K q is above the lower or below the upper edge of its band.
@@ -283,6 +284,8 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
       if (mass.still) continue;
       const auto [u, u1] = place_at(i, t, now);
       if (observer_.wants_energy()) add_losses(i, t, Real(absolute(u - masses_.u[i])));
+      mass.rounding_of_w = 16 * std::numeric_limits<Real>::epsilon() *
+                           (absolute(masses_.u1[i]) + absolute(now.dv) + absolute(pull(i)) * t);
       masses_.u[i] = u;
       masses_.u1[i] = u1;
       if (mass.slides == 0 || mass.slides * masses_.w(i) > 0) continue;
@@ -304,25 +307,38 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
     if (masses_.held[i]) mass.work += nu * mass.damping * sum_ww;
   }
 
-  // Carries out an event. Returns false if it is an impact more than the impact budget allows.
-  bool take(const Which& event) {
+  // Carries out an event after a time t of the piece, and others of its kind that rounding cannot tell apart
+  // from it. Returns false if they are impacts more than the impact budget allows.
+  bool take(const Which& event, const Real& t) {
     const std::size_t i = event.mass;
     if (event.kind == Kind::depth) {
       leave(i);
     } else if (event.kind == Kind::stop) {
       stop(i);
+      for (std::size_t j = 0; j < masses_.size(); ++j)
+        if (each_[j].slides != 0 && absolute(masses_.u1[j]) <= each_[j].rounding_of_w) stop(j);
     } else if (event.kind == Kind::near_wall || event.kind == Kind::far_wall) {
-      if (!tracker_.has_room_for(1)) return false;
-      const Wall wall = event.kind == Kind::near_wall ? masses_.wall(i) : opposite(masses_.wall(i));
-      Base::report_impact(i, wall);
-      masses_.arrive(i, wall);
-      enter(i);
-      if (observer_.wants_energy()) {
-        each_[i].impact = observer_.energy_balance().impact_loss.size();
-        observer_.energy_balance().impact_loss.push_back(0);
-      }
+      const Real most = piece_.second_of_x();
+      Base::find_meeting(
+          meeting_, i, event.kind == Kind::near_wall, t,
+          [&](std::size_t j) {
+            const auto& index = each_[j].in_piece;
+            return index ? absolute(piece_.second_of_q(*index)) : Real(most + absolute(pull(j)));
+          },
+          [&](std::size_t j) { return masses_.held[j] || each_[j].still; });
+      if (!tracker_.has_room_for(std::int64_t(meeting_.size()))) return false;
+      std::ranges::sort(meeting_, {}, [&](const auto& each) { return masses_.number[each.index]; });
+      for (const Meeting<Real>& each : meeting_) meet(each.index, each.wall);
     }
     return true;
+  }
+  void meet(std::size_t i, Wall wall) {
+    Base::report_impact(i, wall);
+    masses_.arrive(i, wall);
+    enter(i);
+    if (!observer_.wants_energy()) return;
+    each_[i].impact = observer_.energy_balance().impact_loss.size();
+    observer_.energy_balance().impact_loss.push_back(0);
   }
   // Sets y' of a mass to zero. If rounding has left it beyond a wall it is on that wall.
   void stop(std::size_t i) {
@@ -374,7 +390,14 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
       const Mass& mass = each_[i];
       const Real direction = mass.still ? Real(0) : mass.slides != 0 ? mass.slides : goes(i, acceleration());
       const bool enters = direction * masses_.away[i] < 0;
-      if (enters && !masses_.held[i]) enter(i);
+      // One of several that nothing holds is kicked into its wall, which is an impact as without components.
+      const bool kicked = mass.holds == 0 && masses_.size() > 1 && tracker_.now() > 0;
+      if (enters && !masses_.held[i]) {
+        if (!kicked)
+          enter(i);
+        else if (tracker_.has_room_for(1))
+          meet(i, masses_.wall(i));
+      }
       if (!enters && masses_.held[i]) leave(i);
     }
   }
@@ -479,6 +502,7 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
   std::vector<PushedWall<Real>> pushed_;
   Piece piece_;
   std::vector<Watched> watched_;
+  std::vector<Meeting<Real>> meeting_;
 };
 
 // Runs a scene that has friction, weight or drag, with one damper or a list.

@@ -43,6 +43,7 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
         lists_dampers_(!has_one_damper(scene)),
         slides_(masses_.size(), Real(0)),
         settles_(masses_.size(), Real(0)),
+        rounding_of_w_(masses_.size(), Real(0)),
         lost_(masses_.size()) {
     for (const std::int32_t i : masses_.number) {
       const SceneDamper& damper = scene.dampers[i];
@@ -69,6 +70,8 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
           if (!Base::impacts(meeting_)) break;
         } else if (kind == Kind::stop) {
           stop(mass);
+          for (std::size_t i = 0; i < masses_.size(); ++i)
+            if (slides_[i] != 0 && absolute(masses_.u1[i]) <= rounding_of_w_[i]) stop(i);
         }
       }
       if (event.watch || stopped_by_rounding) settle();
@@ -245,6 +248,8 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       if (masses_.held[i]) continue;
       const auto [du, du1] = gained(i, t, now);
+      rounding_of_w_[i] = 16 * std::numeric_limits<Real>::epsilon() *
+                          (absolute(masses_.u1[i]) + absolute(now.dv) + absolute(pull(i)) * t);
       masses_.u[i] += du;
       masses_.u1[i] += du1;
       if (slides_[i] == 0) continue;
@@ -270,27 +275,13 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
     if (!(masses_.clearance[i] - masses_.u[i] > 0)) masses_.arrive(i, opposite(masses_.wall(i)));
   }
 
-  // Sets meeting_ to the masses that meet walls now, at the end of a motion of the length t: the i-th one,
-  // and all that rounding cannot tell apart from it (17.2).
+  // Sets meeting_ to the masses that meet walls now, at the end of a motion of the length t.
   void find_impacts(const Motion& motion, std::size_t i, Kind kind, const Real& t) {
     const Real most = motion.primary().bound(2, t < tracker_.search().span ? t : tracker_.search().span);
-    meeting_.clear();
-    for (std::size_t j = 0; j < masses_.size(); ++j) {
-      if (masses_.held[j]) continue;
-      const Real& u1 = masses_.u1[j];
-      const bool near = j == i ? kind == Kind::near_wall : u1 < 0;
-      const Real speed = absolute(u1);
-      if (j != i) {
-        if (u1 == 0) continue;
-        const Real distance = near ? masses_.u[j] : Real(masses_.clearance[j] - masses_.u[j]),
-                   from = near ? absolute(masses_.u[j]) : masses_.clearance[j],
-                   second = most + absolute(pull(j));
-        const Real way = from + (speed + second * t) * t;
-        if (!(distance <= slack_of_instant(way, speed, second) * speed)) continue;
-      }
-      const Wall home = masses_.wall(j);
-      meeting_.push_back({j, t, near ? home : opposite(home), speed});
-    }
+    Base::find_meeting(
+        meeting_, i, kind == Kind::near_wall, t,
+        [&](std::size_t j) { return Real(most + absolute(pull(j))); },
+        [&](std::size_t j) { return bool(masses_.held[j]); });
   }
 
   // Decides who is held: of the masses at rest all that R = -(x'' + gamma), computed with all of them held,
@@ -600,6 +591,7 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
   bool lists_dampers_;
   std::vector<Real> friction_, holds_;  // phi and phi_s
   std::vector<Real> slides_;            // the sign of y' where friction acts, else 0
+  std::vector<Real> rounding_of_w_;     // of y' at the end of the last motion
   std::vector<Real> settles_;           // how long chattering lasts whose limit has just been taken
   std::vector<Clock<Real>> lost_;       // by friction: a sum of many small terms, as time is
   std::vector<char> stays_, joins_;
