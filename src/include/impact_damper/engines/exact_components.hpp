@@ -4,7 +4,8 @@
 // Each secondary mass flies, pushes a wall, or is held by friction where it is, in flight or in its wall.
 // Between two events everything is linear with constant forces, and all move by power series, in pieces
 // (joint_contact.hpp). Events are the beginnings and ends of contacts, stops (y' falls through zero), and
-// ends of holding (M18.4). All are found by Lemma L1 among all masses at once (first_of_many.hpp).
+// ends of holding (M18.4). All are found by Lemma L1 among all masses at once (first_of_many.hpp). A contact
+// of the only mass has a closed form besides, which takes its ringing in few steps (shifted_contact.hpp).
 //
 // After each event settle() decides anew who is held. How a decision and the search that follows it are kept
 // from contradicting each other: restitution_components.hpp.
@@ -24,6 +25,7 @@
 #include "impact_damper/events/first_of_many.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/motion/joint_contact.hpp"
+#include "impact_damper/motion/shifted_contact.hpp"
 #include "impact_damper/motion/wall.hpp"
 
 namespace impact_damper {
@@ -48,6 +50,10 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
       mass.drag = Real(damper.drag);
       mass.friction = Real(damper.friction);
       mass.holds = Real(damper.holding());
+      if (masses_.size() > 1) continue;
+      modes_.emplace(System<Real, Force>(scene, damper),
+                     Real((mass.damping + mass.drag) / (2 * square_root(mass.stiffness))));
+      if (modes_->coupled) modes_.reset();
     }
   }
 
@@ -59,9 +65,8 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
     if (balance) tracker_.begin(energy_now());
     settle();
     while (!tracker_.stopped()) {
-      begin_piece();
-      const Event event = next_event();
-      const bool stopped_by_rounding = pass(event.time);
+      bool stopped_by_rounding = false;
+      const Event event = is_alone() ? push_alone(stopped_by_rounding) : follow_piece(stopped_by_rounding);
       if (tracker_.stopped()) break;
       if (event.watch && !take(*event.watch, event.time)) break;
       if (event.watch || stopped_by_rounding) settle();
@@ -261,29 +266,81 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
     const Real k = pull(i);
     return {u + (u1 * t - away * (now.dx + k * t * t / 2)), u1 - away * (now.dv + k * t)};
   }
+  Event follow_piece(bool& stopped_by_rounding) {
+    begin_piece();
+    const Event event = next_event();
+    const auto works = [&](std::size_t i, const Real& t, const Work<Real>&) {
+      return each_[i].in_piece ? piece_.integral_of_ww(*each_[i].in_piece, t) : Real(0);
+    };
+    stopped_by_rounding = pass(
+        piece_, event.time, Real(0), [&](const Real& t) { return piece_.change(t); },
+        [&](std::size_t i, const Real& t, const Displacement<Real>& now) { return place_at(i, t, now); },
+        works);
+    return event;
+  }
+  // Whether the only mass pushes a wall and moves there.
+  bool is_alone() const {
+    return modes_ && masses_.held[0] && !each_[0].still && masses_.u1[0] != 0 && masses_.u[0] <= 0;
+  }
+  // Follows the only mass, which pushes a wall, until it leaves it or stops in it.
+  Event push_alone(bool& stopped_by_rounding) {
+    const Mass& mass = each_[0];
+    const Real &nu = masses_.nu[0], &away = masses_.away[0];
+    const ShiftedContact<Real, Force> contact(*modes_, tracker_.now(), {x_, v_, q(0), masses_.w(0)},
+                                              masses_.wall(0),
+                                              {-nu * forces_.weight, -pull(0) / mass.stiffness});
+    watched_.clear();
+    watched_.push_back({{}, {0, Kind::depth}, {}});
+    if (mass.holds > 0) watched_.push_back({{}, {0, Kind::stop}, {}});
+    Search<Real>& search = tracker_.search();
+    const auto enclose = [&](const Real&, const Real& t, const Watched& each) {
+      return each.kind == Kind::depth ? contact.derivative_of_q(0, Real(-away), t, search.span)
+                                      : contact.derivative_of_q(1, mass.slides, t, search.span);
+    };
+    const auto first = first_of_many<Real>(
+        watched_, [](const Real& t) { return t; }, enclose, tracker_.remaining(), search,
+        contact.resolution());
+    const auto state = [&](const Real& t) {
+      const State<Real> now = contact.at(t);
+      return Displacement<Real>{now.x, now.v, Real(0), Real(now.v - v_)};
+    };
+    const auto place = [&](std::size_t, const Real& t, const Displacement<Real>&) {
+      const State<Real> now = contact.at(t);
+      return std::array<Real, 2>{away * now.y, away * now.w};
+    };
+    const Real until = first ? first->time : tracker_.remaining();
+    stopped_by_rounding = pass(contact, until, Real(1), state, place,
+                               [](std::size_t, const Real&, const Work<Real>& works) { return works.wall; });
+    if (!first) return {until, {}};
+    return {until, watched_[first->which]};
+  }
   // Advances all masses to `until`, or to an earlier stop. Returns whether rounding has turned a mass back
-  // that has just begun to slide: it then counts as at rest.
-  bool pass(const Real& until) {
-    const auto last = piece_.change(until);
+  // that has just begun to slide: it then counts as at rest. change(t), place(i, t, change): x, and u and u'
+  // of the i-th mass, at t; sum_ww(i, t, works): the integral of its w^2, works having been computed for
+  // wall_damping.
+  template <class Motion, class Change, class Place, class SumOfWw>
+  bool pass(const Motion& motion, const Real& until, const Real& wall_damping, Change&& change, Place&& place,
+            SumOfWw&& sum_ww) {
+    const Displacement<Real> last = change(until);
     State<Real> end{last.x, last.v, Real(0), Real(0)};
-    tracker_.pass(piece_, until, end, Real(0), [&](const Real& t) {
-      const auto now = piece_.change(t);
+    const Work<Real> works = tracker_.pass(motion, until, end, wall_damping, [&](const Real& t) {
+      const Displacement<Real> now = change(t);
       Base::report_sample(t, now, [&](auto&& set) {
         for (std::size_t i = 0; i < masses_.size(); ++i) {
-          const auto [u, u1] = place_at(i, t, now);
+          const auto [u, u1] = place(i, t, now);
           set(i, u, u1);
         }
       });
     });
     const Real t = tracker_.passed();
     if (t == 0) return false;
-    const auto now = t == until ? last : piece_.change(t);
+    const Displacement<Real> now = t == until ? last : change(t);
     bool stopped = false;
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       Mass& mass = each_[i];
       if (mass.still) continue;
-      const auto [u, u1] = place_at(i, t, now);
-      if (observer_.wants_energy()) add_losses(i, t, Real(absolute(u - masses_.u[i])));
+      const auto [u, u1] = place(i, t, now);
+      if (observer_.wants_energy()) add_losses(i, sum_ww(i, t, works), Real(absolute(u - masses_.u[i])));
       mass.rounding_of_w = 16 * std::numeric_limits<Real>::epsilon() *
                            (absolute(masses_.u1[i]) + absolute(now.dv) + absolute(pull(i)) * t);
       masses_.u[i] = u;
@@ -297,12 +354,10 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
     return stopped;
   }
   // way: that the mass has gone in its cavity, in one direction if it has friction.
-  void add_losses(std::size_t i, const Real& t, const Real& way) {
+  void add_losses(std::size_t i, const Real& sum_ww, const Real& way) {
     Mass& mass = each_[i];
     const Real& nu = masses_.nu[i];
     if (mass.slides != 0) mass.by_friction.advance(Real(nu * mass.friction * way));
-    if (!mass.in_piece) return;
-    const Real sum_ww = piece_.integral_of_ww(*mass.in_piece, t);
     mass.by_drag += nu * mass.drag * sum_ww;
     if (masses_.held[i]) mass.work += nu * mass.damping * sum_ww;
   }
@@ -497,6 +552,7 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
   static constexpr double at_edge = 8;
 
   bool lists_dampers_;
+  std::optional<ContactModes<Real, Force>> modes_;  // of the only mass in contact, if they are apart
   std::vector<Mass> each_;
   ConstantForces<Real> forces_;
   std::vector<PushedWall<Real>> pushed_;

@@ -23,8 +23,9 @@ class Contact : public ContactMotion<Real, Force>, public ProofsByBounds<Contact
   using Motion::inward_, Motion::parts_, Motion::phase_, Motion::start_, Motion::system_, Motion::wall_;
 
  public:
-  using Motion::by_changes, Motion::depth, Motion::derivative_of_x, Motion::fast_at, Motion::leads_of_x,
-      Motion::parts, Motion::resolution, Motion::slow_at, Motion::sum_at;
+  using Motion::bound_of_x, Motion::by_changes, Motion::depth, Motion::derivative_of_q,
+      Motion::derivative_of_x, Motion::fast_at, Motion::leads_of_x, Motion::parts, Motion::resolution,
+      Motion::slow_at, Motion::sum_at;
 
   Contact(const ContactModes<Real, Force>& system, const Real& begin, const State<Real>& start, Wall wall)
       : Contact(system, begin, system.forcing.phase(begin), start, wall, Real(wall == Wall::left ? 0 : 1)) {}

@@ -70,11 +70,16 @@ class ContactMotion {
   // Encloses inward() q, the depth of the secondary mass in the wall, from t until t + span. It falls through
   // zero at the contact's end.
   LocalEnclosure<Real> depth(const Real& t, const Real& span) const {
+    return derivative_of_q(0, inward_, t, span);
+  }
+  // Encloses sign, 1 or -1, times the `order`-th derivative of q, 0 or 1, from t until t + span.
+  LocalEnclosure<Real> derivative_of_q(std::size_t order, const Real& sign, const Real& t,
+                                       const Real& span) const {
     const ContactState<Real> slow = slow_at(t), fast = fast_at(t),
                              both = by_changes(t) ? sum_of_changes(t) : sum_of(slow, fast);
-    LocalEnclosure<Real> ahead = look(instants_of_q(slow, fast, t), 0, inward_, span);
-    ahead.whole.g = inward_ * both.q;
-    ahead.whole.g1 = inward_ * both.w;
+    LocalEnclosure<Real> ahead = look(instants_of_q(slow, fast, t), order, sign, span);
+    if (order == 0) ahead.whole.g = sign * both.q;
+    (order == 0 ? ahead.whole.g1 : ahead.whole.g) = sign * both.w;
     return ahead;
   }
   // Encloses sign, 1 or -1, times the `order`-th derivative of x, 0 or 1, from t until t + span.
