@@ -295,12 +295,9 @@ TEST_CASE("components: an engine without them names the one that has them") {
   const auto told = [&](const Engine& engine) {
     return rejection_of<InvalidArguments>([&] { simulate(scene, engine, {}); });
   };
-  const std::string of_both = ": the cem and restitution engines have friction and weight";
-  CHECK(contains(told(Exact{}), "friction: must be 0 with the exact engine, got 0.1" + of_both));
-  CHECK(contains(told(Exact{}), "weight: must be 0 with the exact engine, got 0.5" + of_both));
-  for (const Engine& engine : {Engine(Exact{}), Engine(Restitution{})})
-    CHECK(contains(told(engine), "engine, got 0.2: only the cem engine has drag"));
-  CHECK(!contains(told(Restitution{}), "friction"));
+  CHECK(told(Exact{}) == not_rejected);
+  CHECK(told(Restitution{}) ==
+        "drag: must be 0 with the restitution engine, got 0.2: the exact and cem engines have drag");
   Recorder recorder(Record{});
   CHECK(contains(rejection_of<InvalidArguments>([&] { run_cem(checked(scene, Cem{}), recorder); }),
                  "scene: must have no friction, drag and weight for this function"));

@@ -103,7 +103,7 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
     Real work{0};                           // of its wall's damper in this contact
     Clock<Real> by_friction{};              // lost: a sum of many small terms, as time is
     Real by_drag{0};
-    Real rounding_of_w{0};  // at the end of the last piece
+    Real rounding_of_u{0}, rounding_of_w{0};  // at the end of the last piece
   };
   // What falls through zero: the gap to the wall that a mass left last or to the other one, the depth in its
   // wall, its speed, or what x'' + gamma + K q is above the lower or below the upper edge of its band.
@@ -243,7 +243,7 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
     if (order > 0) {
       const auto n = std::size_t(order);
       const Real next = piece_.begins(function, n + 1);
-      if (piece_.begins(function, n) < next * Real(1e-6)) {
+      if (const Real first = piece_.begins(function, n); first >= -noise && first < next * Real(1e-6)) {
         const Real leaves = Real(1.5) * next / piece_.bound(function, n + 2);
         each.begin = leaves < piece_.length() ? leaves : piece_.length();
       }
@@ -341,6 +341,8 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
       if (mass.still) continue;
       const auto [u, u1] = place(i, t, now);
       if (observer_.wants_energy()) add_losses(i, sum_ww(i, t, works), Real(absolute(u - masses_.u[i])));
+      mass.rounding_of_u =
+          16 * std::numeric_limits<Real>::epsilon() * (absolute(masses_.u[i]) + absolute(masses_.u1[i]) * t);
       mass.rounding_of_w = 16 * std::numeric_limits<Real>::epsilon() *
                            (absolute(masses_.u1[i]) + absolute(now.dv) + absolute(pull(i)) * t);
       masses_.u[i] = u;
@@ -368,6 +370,8 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
     const std::size_t i = event.mass;
     if (event.kind == Kind::depth) {
       leave(i);
+      for (std::size_t j = 0; j < masses_.size(); ++j)
+        if (masses_.held[j] && masses_.u1[j] > 0 && -masses_.u[j] <= each_[j].rounding_of_u) leave(j);
     } else if (event.kind == Kind::stop) {
       stop(i);
       for (std::size_t j = 0; j < masses_.size(); ++j)
@@ -423,32 +427,26 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
     if (masses_.u1[i] < 0) masses_.u1[i] = 0;  // by rounding
   }
 
-  // Decides who is held (18.2): of the masses at rest all that can be. Those that cannot are let go one by
-  // one, the one with the largest excess first. Then a mass at rest on its wall enters it or leaves it.
+  // Decides who is held: of the masses at rest those that can be. Which these are does not depend on the
+  // order in which it is found: always the first one that contradicts its state changes it, which ends
+  // (18.6). Then a mass at rest on its wall enters it or leaves it.
   void settle() {
-    forces_.held = 0;
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       Mass& mass = each_[i];
       const Real w = masses_.w(i);
       mass.still = w == 0 && mass.holds > 0;
       mass.slides = mass.holds > 0 ? Real(w > 0) - Real(w < 0) : Real(0);
-      if (mass.still) forces_.held += masses_.nu[i];
     }
-    while (const auto first = first_to_go()) {
-      each_[first->mass].still = false;
-      each_[first->mass].slides = first->direction;
-      forces_.held -= masses_.nu[first->mass];
-      if (std::ranges::none_of(each_, &Mass::still)) forces_.held = 0;
-    }
+    sum_up_held();
+    for (std::size_t changes = 0; change_one(changes > 8 * masses_.size()); ++changes) sum_up_held();
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       if (!rests_on_wall(i)) continue;
       const Mass& mass = each_[i];
       const Real direction = mass.still ? Real(0) : mass.slides != 0 ? mass.slides : goes(i, acceleration());
       const bool enters = direction * masses_.away[i] < 0;
-      // One of several that nothing holds is kicked into its wall, which is an impact as without components.
-      const bool kicked = mass.holds == 0 && masses_.size() > 1 && tracker_.now() > 0;
+      // Later than at the release that is an impact, but by rounding for one that friction did not hold.
       if (enters && !masses_.held[i]) {
-        if (!kicked)
+        if (tracker_.now() == 0 || (masses_.size() == 1 && mass.holds == 0))
           enter(i);
         else if (tracker_.has_room_for(1))
           meet(i, masses_.wall(i));
@@ -456,25 +454,41 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
       if (!enters && masses_.held[i]) leave(i);
     }
   }
-  struct Going {
-    std::size_t mass;
-    Real direction, excess;
-  };
-  std::optional<Going> first_to_go() const {
+  void sum_up_held() {
+    forces_.held = 0;
+    for (std::size_t i = 0; i < masses_.size(); ++i)
+      if (each_[i].still) forces_.held += masses_.nu[i];
+  }
+  // Lets go the first mass that cannot be held, or holds one again that would be pushed against the direction
+  // in which it was let go. Returns false if there is none. only_holds: static friction larger than friction
+  // leaves more than one answer, so that without an end to it one might be let go and held for ever.
+  bool change_one(bool only_holds) {
     const Acceleration now = acceleration();
-    std::optional<Going> first;
     for (std::size_t i = 0; i < masses_.size(); ++i) {
-      if (!each_[i].still) continue;
-      const Real direction = goes(i, now), excess = absolute(now.value + wall_spring(i)) - each_[i].holds;
-      if (direction != 0 && (!first || excess > first->excess)) first = Going{i, direction, excess};
+      Mass& mass = each_[i];
+      if (masses_.u1[i] != 0 || !(mass.holds > 0)) continue;
+      if (mass.still) {
+        const Real direction = only_holds ? Real(0) : goes(i, now);
+        if (direction == 0) continue;
+        mass.still = false;
+        mass.slides = direction;
+        return true;
+      }
+      const Real pushed = -mass.slides * (now.value + wall_spring(i)) - mass.friction;
+      if (pushed >= -error_for(i, now)) continue;
+      mass.still = true;
+      mass.slides = 0;
+      return true;
     }
-    return first;
+    return false;
+  }
+  Real error_for(std::size_t i, const Acceleration& now) const {
+    return now.error +
+           at_edge * std::numeric_limits<Real>::epsilon() * (each_[i].holds + absolute(wall_spring(i)));
   }
   // The direction in which a mass at rest is let go; 0 if it stays.
   Real goes(std::size_t i, const Acceleration& now) const {
-    const Real spring = wall_spring(i), needs = -(now.value + spring), &holds = each_[i].holds;
-    const Real error =
-        now.error + at_edge * std::numeric_limits<Real>::epsilon() * (holds + absolute(spring));
+    const Real needs = -(now.value + wall_spring(i)), &holds = each_[i].holds, error = error_for(i, now);
     for (const Real& direction : {Real(1), Real(-1)}) {
       const Real excess = direction * needs - holds;
       if (excess > error || (excess >= -error && direction * later() < 0)) return direction;

@@ -591,8 +591,8 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
   bool lists_dampers_;
   std::vector<Real> friction_, holds_;  // phi and phi_s
   std::vector<Real> slides_;            // the sign of y' where friction acts, else 0
-  std::vector<Real> rounding_of_w_;     // of y' at the end of the last motion
   std::vector<Real> settles_;           // how long chattering lasts whose limit has just been taken
+  std::vector<Real> rounding_of_w_;     // of y' at the end of the last motion
   std::vector<Clock<Real>> lost_;       // by friction: a sum of many small terms, as time is
   std::vector<char> stays_, joins_;
   Real held_mass_{0}, by_friction_{0}, rest_{0};  // sigma, sum of nu phi sgn w, F of (M18.7)

@@ -28,7 +28,7 @@ class ShiftedContact : public ProofsByBounds<ShiftedContact<Real, Force>, Real> 
   State<Real> at(const Real& t) const {
     if (t == 0) return start_;
     const State<Real> now = contact_.at(t);
-    return {rest_[0] + now.x, now.v, rest_[1] + now.y, now.w};
+    return {x_at(t), now.v, rest_[1] + now.y, now.w};
   }
   // Encloses sign times the `order`-th derivative of q, 0 or 1, from t until t + span.
   LocalEnclosure<Real> derivative_of_q(std::size_t order, const Real& sign, const Real& t,
@@ -37,7 +37,9 @@ class ShiftedContact : public ProofsByBounds<ShiftedContact<Real, Force>, Real> 
   }
   LocalEnclosure<Real> derivative_of_x(std::size_t order, const Real& sign, const Real& t,
                                        const Real& span) const {
-    return shifted(contact_.derivative_of_x(order, sign, t, span), order, Real(sign * rest_[0]));
+    auto all = shifted(contact_.derivative_of_x(order, sign, t, span), order, Real(sign * rest_[0]));
+    if (order == 0) all.whole.g = sign * x_at(t);
+    return all;
   }
   std::array<Real, 4> leads_of_x() const {
     auto leads = contact_.leads_of_x();
@@ -52,6 +54,10 @@ class ShiftedContact : public ProofsByBounds<ShiftedContact<Real, Force>, Real> 
   Real resolution() const { return contact_.resolution(); }
 
  private:
+  // By its change, as x must not take the rounding errors of its place of rest, which may be much larger.
+  Real x_at(const Real& t) const {
+    return t == 0 ? start_.x : Real(start_.x + (start_.v * t + contact_.change_of_x(t)->dx));
+  }
   static LocalEnclosure<Real> shifted(LocalEnclosure<Real> all, std::size_t order, const Real& by) {
     if (order > 0) return all;
     all.whole.g += by;
