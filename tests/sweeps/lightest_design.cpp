@@ -214,6 +214,7 @@ TEST_CASE("what a design is told to suffice against locking does, to the digits 
     question.scene.inclination = steep;
     question.scene.damper().friction_coefficient = 0.5;
     question.amplitude = 10;
+    question.secondary_mass = {7.9, 8};
     const std::string message = told(), before = "with a coefficient of friction of ";
     CAPTURE(message);
     REQUIRE(message.find(before) != std::string::npos);

@@ -171,11 +171,8 @@ FrictionFindings friction_findings(const Findings& findings, double coefficient,
   const auto first = first_row(rows);
   if (!first) return found;
   found.last_amplitude = rows.amplitude.back();
-  for (std::size_t row = 0; row < rows.impacts.size(); ++row) {
-    if (rows.impacts[row] == 0) continue;
-    found.last_impact = {row, rows.amplitude[row]};
-    found.last_impact_time = rows.peak_time[row];
-  }
+  found.last_impact = last_with_impact(rows);
+  if (found.last_impact) found.last_impact_time = rows.peak_time[found.last_impact->row];
   if (findings.forced()) {
     found.steady = steady_amplitude(rows);
     return found;
@@ -242,6 +239,13 @@ void simulate_others(Findings& findings, const EnsembleOptions& options, const P
 }
 
 }  // namespace
+
+std::optional<HalfCycleRow> last_with_impact(const HalfCycles& half_cycles) {
+  std::size_t rows = half_cycles.impacts.size();
+  while (rows > 0 && half_cycles.impacts[rows - 1] == 0) --rows;
+  if (rows == 0) return std::nullopt;
+  return HalfCycleRow{rows - 1, half_cycles.amplitude[rows - 1]};
+}
 
 Run Findings::run_of(std::size_t damper) const { return several() ? run_of_damper(run, damper) : run; }
 

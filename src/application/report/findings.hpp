@@ -60,13 +60,16 @@ struct DamperFindings {
   std::optional<Loads> loads;  // if it strikes a wall
 };
 
+// Returns the last half cycle that has an impact, if any has one.
+std::optional<HalfCycleRow> last_with_impact(const HalfCycles& half_cycles);
+
 // What friction in the cavities makes of a run, or its absence.
 struct FrictionFindings {
-  double coefficient = 0;                   // mu
-  std::optional<double> to_tenth;           // of the amplitude, as in Fall, counted from the first peak
-  std::optional<double> best, best_eta;     // amplitude of the best damping and its loss factor, if any
-  std::optional<HalfCycleRow> last_impact;  // the last half cycle that has one
-  double last_impact_time = 0;              // of its peak
+  double coefficient = 0;                // mu
+  std::optional<double> to_tenth;        // of the amplitude, as in Fall, counted from the first peak
+  std::optional<double> best, best_eta;  // amplitude of the best damping and its loss factor, if any
+  std::optional<HalfCycleRow> last_impact;
+  double last_impact_time = 0;  // of its peak
   double last_amplitude = 0;
   std::optional<SteadyAmplitude> steady;  // forced motion with enough half cycles
   bool is_whole = false;                  // as long as Findings::run

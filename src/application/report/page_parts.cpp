@@ -242,9 +242,13 @@ std::string friction_in_short(const Findings& findings) {
   text += typical.last_impact ? "the last impact would be at an amplitude of " +
                                     quantities.length(typical.last_impact->amplitude)
                               : it + " would never strike a wall";
-  return paragraph_html(text + ", and the amplitude at the end of the run " +
-                        quantities.length(typical.last_amplitude) + " in place of " +
-                        quantities.length(without.last_amplitude) + ".");
+  const bool steady = typical.steady && without.steady;
+  const auto amplitude = [&](const FrictionFindings& its) {
+    return quantities.length(steady ? its.steady->greatest : its.last_amplitude);
+  };
+  return paragraph_html(text + ", and the amplitude " +
+                        (steady ? "in the last quarter of the run at most " : "at the end of the run ") +
+                        amplitude(typical) + " in place of " + amplitude(without) + ".");
 }
 
 }  // namespace
@@ -264,6 +268,10 @@ std::string summary_html(const Findings& findings) {
     text += "There is no impact at all.";
   else if (lost > 0)
     text += "Impacts took " + percent_html(impacts / lost) + " of the energy that was lost.";
+  if (const auto last = last_with_impact(*findings.run.half_cycles);
+      last && has_components(findings.subject.scene))
+    text += " The last one is at an amplitude of " + quantities.length(last->amplitude) + ", and " +
+            quantities.length(findings.last_amplitude) + " are left at the end of the run.";
   return paragraph_html(text) + friction_in_short(findings);
 }
 

@@ -306,10 +306,12 @@ SceneInUnits with_defaults(SceneInUnits scene) {
 
 namespace {
 
-// Returns the problem of an amplitude at which friction and weight hold the heaviest mass of the question,
-// with what would suffice.
+// Returns the problem of an amplitude at which friction and weight hold the lightest mass of the question, or
+// else the heaviest, with what would suffice.
 std::optional<Problem> problem_of_locking(const DesignQuestion& question) {
-  const double mass = question.secondary_mass.most, asked = question.amplitude;
+  const double asked = question.amplitude;
+  const auto& [lightest, heaviest] = question.secondary_mass;
+  const double mass = asked > locking_amplitude_of(question, lightest) ? heaviest : lightest;
   const double held = locking_amplitude_of(question, mass);
   if (asked > held || held == 0) return std::nullopt;
   DesignQuestion smooth = question;
