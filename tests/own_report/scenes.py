@@ -553,7 +553,7 @@ def frictions(page, scene, run, scales):
         write("rubbed.json", rubbed)
         rows = run["half_cycles"]
         if mu:
-            rows = json.loads(call("run", "--scene", "rubbed.json", "--engine", engine).stdout)["half_cycles"]
+            rows = json.loads(call("run", "--scene", "rubbed.json", "--engine", engine, *(["--locate"] if engine == "cem" else [])).stdout)["half_cycles"]
         impacts, amplitudes = rows["impacts"], rows["amplitude"]
         struck = [row for row, count in enumerate(impacts) if count]
         wanted = {"last impact": in_page(amplitudes[struck[-1]], scales), "its time": rows["peak_time"][struck[-1]] * scales[0],

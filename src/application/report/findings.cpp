@@ -155,11 +155,13 @@ void find_spread(Findings& findings) {
   }
 }
 
-// Returns the engine if it can have the scene, else the component element method with the same walls.
+// Returns the engine if it can have the scene, else the component element method with the same walls, which
+// locates impacts: the last ones are slow, and an error of the first order may add or lose one.
 Engine engine_for(const Scene& scene, const Engine& engine) {
   if (incompatibilities_of(scene, engine).empty()) return engine;
   Cem same_walls;
   same_walls.calibration = calibration_of(engine);
+  same_walls.locate = true;
   return same_walls;
 }
 
