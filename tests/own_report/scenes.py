@@ -542,6 +542,39 @@ def compare(page, text, run, scales):
     return shown
 
 
+def frictions(page, scene, run, scales):
+    """What the page says of friction, by runs of the scene with it that end with the page's own."""
+    engine = re.search(r"with friction, by the engine (\w+)", page.words["scene"])[1]
+    ends = {"until_seconds": run["end_time"] * scales[0]}
+    for mu in (0, 0.1, 0.2, 0.3):
+        rubbed = {key: value for key, value in scene.items() if not key.startswith("until_")} | ends
+        for each in rubbed.get("dampers", [rubbed]):
+            each["friction_coefficient"] = mu
+        write("rubbed.json", rubbed)
+        rows = run["half_cycles"]
+        if mu:
+            rows = json.loads(call("run", "--scene", "rubbed.json", "--engine", engine, *(["--locate"] if engine == "cem" else [])).stdout)["half_cycles"]
+        impacts, amplitudes = rows["impacts"], rows["amplitude"]
+        struck = [row for row, count in enumerate(impacts) if count]
+        wanted = {"last impact": in_page(amplitudes[struck[-1]], scales), "its time": rows["peak_time"][struck[-1]] * scales[0],
+                  "end": in_page(amplitudes[-1], scales)}
+        if run["scene"]["force_amplitude"]:
+            quarter = amplitudes[-(len(amplitudes) // 4):]
+            wanted |= {"largest": in_page(max(quarter), scales), "mean": in_page(sum(quarter) / len(quarter), scales)}
+        else:
+            tenth = next((row for row, a in enumerate(amplitudes) if a < amplitudes[0] / 10), None)
+            if tenth and amplitudes[tenth] > amplitudes[tenth - 1] / 10:
+                wanted["time to a tenth"] = (rows["peak_time"][tenth] - rows["peak_time"][0]) * scales[0]
+            eta, amplitude = best_damping(rows)
+            if eta > 0:
+                wanted |= {"best damping": in_page(amplitude, scales), "damping ratio there": 50 * eta}
+        for what, value in wanted.items():
+            holds(page, "scene", value, f"{what} with a coefficient of friction of {mu}", 1e-6)
+        if mu == 0.2:
+            for what in ("last impact", "largest" if "largest" in wanted else "end"):
+                holds(page, "header", wanted[what], f"{what} with a coefficient of friction of {mu}")
+
+
 given = json.loads(example.read_text())
 write("slip.json", {**given, "clearance": given["clearance"] / 1000, "until_seconds": 10,
                     "description": "1 < 2 & \"3\" {{title}}"})
@@ -589,6 +622,10 @@ for name in trial.words or SCENES:
     if "--scene" in options and "x0" not in (scene := json.loads((folder / options[1]).read_text())):
         mass, stiffness, length = scene["mass"], scene["stiffness"], scene.get("clearance") or scene["dampers"][0]["clearance"]
         scales = (math.sqrt(mass / stiffness), length, stiffness * length * length * 1e-6)
+    if scales:
+        frictions(page, scene, run, scales)
+    demand(bool(scales) == ("If it slid with" in page.words["header"] or "If they slid with" in page.words["header"]),
+           f"{name}: friction has no scale without units")
     shown = compare(page, text, run, scales)
     compare_axes(name, text, run, scales, shown)
 

@@ -170,9 +170,66 @@ TEST_CASE("clearances are looked for up to where impacts have a margin of 1.5 to
 }
 
 TEST_CASE("masses are looked for between round numbers") {
-  CHECK(default_masses(40).least == 0.2);
-  CHECK(default_masses(40).most == 8);
-  CHECK(default_masses(3).most == 0.6);  // 0.2 * 3 is 0.6000000000000001
+  DesignQuestion question = mast();
+  CHECK(default_masses(question).least == 0.2);
+  CHECK(default_masses(question).most == 8);
+  question.scene.mass = 3;
+  CHECK(default_masses(question).most == 0.6);  // 0.2 * 3 is 0.6000000000000001
+}
+
+TEST_CASE("friction and weight hold a mass up to the locking amplitude of the design, and not beyond") {
+  DesignQuestion question = mast();
+  question.scene.damper().friction_coefficient = 0.2;
+  const auto friction_loss = [&](double amplitude, double mass, double clearance) {
+    SceneFile file = scene_of_design(question, {mass, clearance}, 2);
+    // About the place where the primary mass rests with the secondary one.
+    const double rest = dimensionless(*file.in_units).weight * clearance * mass / 40;
+    file.in_units->initial_displacement = amplitude - rest;
+    return simulate(dimensionless(*file.in_units), Restitution{}, {.energy = true}).energy->friction_loss;
+  };
+  for (const double steep : {0.0, 3.0})
+    for (const double held : {0.0, 0.25})
+      for (const double mass : {0.5, 8.0})
+        for (const double clearance : {3.0, 80.0}) {
+          question.scene.inclination = steep;
+          question.scene.damper().static_friction_coefficient = held;
+          const double amplitude = locking_amplitude_of(question, mass);
+          CAPTURE(steep);
+          CAPTURE(held);
+          CAPTURE(amplitude);
+          CHECK(friction_loss(0.9999 * amplitude, mass, clearance) == 0);
+          CHECK(friction_loss(1.0001 * amplitude, mass, clearance) > 0);
+        }
+}
+
+TEST_CASE("what a design is told to suffice against locking does, to the digits that are told") {
+  DesignQuestion question = mast();
+  question.engine = Restitution{};
+  const auto told = [&] {
+    for (const Problem& problem : problems_of(question))
+      if (problem.field == "amplitude") return problem.message;
+    return std::string();
+  };
+  for (const double steep : {0.0, 3.0}) {
+    question.scene.inclination = steep;
+    question.scene.damper().friction_coefficient = 0.5;
+    question.amplitude = 10;
+    question.secondary_mass = {7.9, 8};
+    const std::string message = told(), before = "with a coefficient of friction of ";
+    CAPTURE(message);
+    REQUIRE(message.find(before) != std::string::npos);
+    const double enough = std::stod(message.substr(message.find(before) + before.size()));
+    question.scene.damper().friction_coefficient = enough;
+    CHECK(told().empty());
+    question.scene.damper().friction_coefficient = 1.012 * enough;
+    CHECK_FALSE(told().empty());
+    CHECK(default_masses(question).most < question.secondary_mass.most);
+    question.secondary_mass = default_masses(question);
+    CHECK(told().empty());
+    question.secondary_mass = {1, 8};
+  }
+  question.scene.inclination = 60;
+  CHECK(told().find("its weight alone holds it up to") != std::string::npos);
 }
 
 TEST_CASE("a scene with unit scales is the dimensionless scene") {
@@ -186,6 +243,22 @@ TEST_CASE("a scene with unit scales is the dimensionless scene") {
   units.until_seconds = 1;
   CHECK(dimensionless(units) == scene);
   CHECK(scales_of(units).of(Dimension::time) == 1);
+}
+
+TEST_CASE("a scene with unit scales has the friction, weight and drag of the dimensionless scene") {
+  Scene scene{.until_time = 1, .dampers = {{.friction = 0.3, .static_friction = 0.4, .drag = 0.7}}};
+  for (const double weight : {0.0, 2.3}) {
+    scene.weight = weight;
+    SceneInUnits units = with_unit_scales(scene);
+    units.until_seconds = 1;
+    CHECK(problems_of(units).empty());
+    const Scene back = dimensionless(units);
+    const auto same = [](double value) { return doctest::Approx(value).epsilon(1e-15); };
+    CHECK(back.weight == same(weight));
+    CHECK(back.damper().friction == same(0.3));
+    CHECK(back.damper().static_friction == same(0.4));
+    CHECK(back.damper().drag == same(0.7));
+  }
 }
 
 TEST_CASE("the check has other draws than the search, on both sides of the design's numbers") {

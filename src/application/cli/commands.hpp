@@ -99,8 +99,9 @@ enum class Stops { needed, ignored };
 SceneFile scene_of(Arguments& arguments, Stops stops = Stops::needed);
 // Returns the text of --scene, "" without one.
 std::string scene_name_of(const Arguments& arguments);
-// Throws InputError about its file where a command that is for one damper without friction, weight and drag
-// is given another scene.
+// Throw InputError about its file where a command that is for one damper, or for one without friction, weight
+// and drag, is given another scene.
+void require_one_damper(const Scene& scene, const std::string& scene_file);
 void require_one_ideal_damper(const Scene& scene, const std::string& scene_file);
 // Rejects the options beside --scene, in commands that change a scene in units by its own numbers.
 void reject_options_beside_units(Arguments& arguments, const SceneFile& scene, const std::string& instead);

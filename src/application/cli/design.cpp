@@ -13,7 +13,7 @@ namespace {
 
 SceneFile scene_with_one_damper(Arguments& arguments) {
   SceneFile file = scene_of(arguments, Stops::ignored);
-  require_one_ideal_damper(file.scene, scene_name_of(arguments));
+  require_one_damper(file.scene, scene_name_of(arguments));
   reject_options_beside_units(arguments, file, "");
   return file;
 }
@@ -60,8 +60,11 @@ std::vector<Variable> tolerable(bool in_units) {
   any.in_units.emplace();
   std::vector<Variable> variables = variables_of(any);
   std::erase_if(variables, [&](const Variable& each) {
+    const bool only_in_units = each.name == "mass" || each.name == "stiffness" || each.name == "damping" ||
+                               each.name == "inclination" || each.name == "gravity" || each.name == "drag" ||
+                               each.name.ends_with("friction_coefficient");
     return each.name.starts_with("exciting_") || each.name.starts_with("secondary_d") ||
-           (!in_units && (each.name == "mass" || each.name == "stiffness" || each.name == "damping"));
+           (!in_units && only_in_units);
   });
   return variables;
 }
@@ -79,7 +82,7 @@ DesignQuestion question_of(Arguments& arguments) {
     if (const auto value = arguments.number(option, above(0))) *number = *value;
   }
   arguments.read("--share", question.share, within(0.5, 0.999));
-  question.secondary_mass = range_of(arguments, "--secondary-mass", default_masses(*question.scene.mass));
+  question.secondary_mass = range_of(arguments, "--secondary-mass", default_masses(question));
   question.clearance = range_of(arguments, "--clearance",
                                 default_clearances(question.amplitude, *question.scene.damper().restitution));
   std::vector<std::string> tolerances = arguments.texts("--tolerance");
@@ -172,13 +175,23 @@ std::string viscous_in_words(const DesignQuestion& question, const DesignAnswer&
 std::string advice_on(const DesignQuestion& question, const DesignAnswer& answer) {
   const Design& design = answer.designs.front().design;
   std::string text;
-  if (!answer.met) text += "A heavier secondary mass, more time or narrower tolerances may do.\n";
+  if (const double held = locking_amplitude_of(question, design.secondary_mass); held > 0)
+    text += filled("Up to {} that secondary mass is held at rest in a cavity of any clearance.\n",
+                   text_in_unit(question, held, Dimension::length));
+  constexpr double heavier = 1.1;
+  if (!answer.met)
+    text += locking_amplitude_of(question, heavier * design.secondary_mass) < question.amplitude
+                ? "A heavier secondary mass, more time or narrower tolerances may do.\n"
+                : "More time or narrower tolerances may do.\n";
   if (answer.met && design.secondary_mass == question.secondary_mass.least)
     text += "The secondary mass is the least of its range: a lighter one may do.\n";
   if (design.clearance == question.clearance.least)
     text += "The clearance is the least of its range: a narrower one may do better.\n";
   if (design.clearance == question.clearance.most) {
-    const auto failing = failing_clearance(question.amplitude, *question.scene.damper().restitution);
+    // The closed form is for a mass without friction and weight.
+    const auto failing = locking_amplitude_of(question, design.secondary_mass) > 0
+                             ? std::nullopt
+                             : failing_clearance(question.amplitude, *question.scene.damper().restitution);
     text += filled(
         "The clearance is the widest of its range: a wider one may do better{}.\n",
         failing ? filled("; with {} impacts fail at {}", text_in_unit(question, *failing, Dimension::length),
@@ -246,6 +259,7 @@ void read_tolerances(Arguments& arguments, DamperSetQuestion& question) {
 Asked asked_of(Arguments& arguments) {
   Asked asked;
   asked.file = scene_with_one_damper(arguments);
+  require_one_ideal_damper(asked.file.scene, scene_name_of(arguments));
   for (const char* option : {"--within", "--share", "--clearance", "--neighbours", "--seed", "--write-plan"})
     if (arguments.given(option)) arguments.reject(option, "is not for several dampers, --dampers");
   for (const Option& option : engine_options())
@@ -452,6 +466,7 @@ Command design_command() {
       .footer =
           R"(The scene is that of impact-damper run, a free decay; its secondary mass and clearance are not looked at. Beside a
 dimensionless scene lengths are in units of its clearance, masses of the primary mass, times of sqrt(M/K).
+Its friction and weight hold a secondary mass at small amplitudes, with any clearance: --to must lie above them.
 Time is counted to the peak of the first half cycle below the amplitude.
 
 Each line is the lightest design for a time, the first for the time asked: "nominal" is its own time, the next

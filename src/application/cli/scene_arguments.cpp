@@ -175,8 +175,12 @@ SceneFile scene_of(Arguments& arguments, Stops stops) {
 
 std::string scene_name_of(const Arguments& arguments) { return arguments.text("--scene").value_or(""); }
 
-void require_one_ideal_damper(const Scene& scene, const std::string& scene_file) {
+void require_one_damper(const Scene& scene, const std::string& scene_file) {
   if (!has_one_damper(scene)) throw InputError(scene_file, {{"/dampers", problem_of_several().message}});
+}
+
+void require_one_ideal_damper(const Scene& scene, const std::string& scene_file) {
+  require_one_damper(scene, scene_file);
   if (has_components(scene))
     throw InputError(scene_file.empty() ? "the scene" : scene_file,
                      {{"",

@@ -53,6 +53,14 @@ Drawing drawing_of(const Findings& findings, const std::string& name, const std:
                   ", e = " + ratio(subject.scene.damper().restitution);
   }
   parameters += ", ζ = " + ratio(subject.scene.damping_ratio);
+  const auto component = [&](const char* symbol, double value) {
+    if (value != 0) parameters += std::string(", ") + symbol + " = " + ratio(value);
+  };
+  if (!findings.several()) {
+    component("φ", subject.scene.damper().friction);
+    component("d", subject.scene.damper().drag);
+  }
+  component("γ", subject.scene.weight);
   if (findings.forced())
     parameters +=
         ", f = " + ratio(subject.scene.force_amplitude) + ", ω = " + ratio(subject.scene.force_frequency);

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <numbers>
 
+#include "impact_damper/engines/checked.hpp"
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/simulate.hpp"
 
@@ -46,6 +47,7 @@ void find_falls(Findings& findings) {
 std::size_t best_row(const LossFactor& loss) {
   return static_cast<std::size_t>(std::ranges::max_element(loss.eta) - loss.eta.begin());
 }
+bool has_loss(const LossFactor& loss) { return !loss.eta.empty() && std::ranges::max(loss.eta) > 0; }
 
 void find_best_damping(Findings& findings) {
   const HalfCycles& rows = *findings.run.half_cycles;
@@ -58,7 +60,7 @@ void find_best_damping(Findings& findings) {
   const bool lossless = std::ranges::all_of(scene.dampers, keeps_speed);
   if (lossless && scene.damping_ratio == 0) return;  // no energy is lost
   if (findings.run.impacts->time.empty()) return;    // the same at every amplitude
-  if (loss.eta.empty() || !(std::ranges::max(loss.eta) > 0)) return;
+  if (!has_loss(loss)) return;
   const std::size_t best = best_row(loss);
   const auto over_losses = [&](const std::vector<double> LossFactor::*column) -> std::optional<Spread> {
     std::vector<double> values{(loss.*column)[best]};
@@ -153,6 +155,58 @@ void find_spread(Findings& findings) {
   }
 }
 
+// Returns the engine if it can have the scene, else the component element method with the same walls, which
+// locates impacts: the last ones are slow, and an error of the first order may add or lose one.
+Engine engine_for(const Scene& scene, const Engine& engine) {
+  if (incompatibilities_of(scene, engine).empty()) return engine;
+  Cem same_walls;
+  same_walls.calibration = calibration_of(engine);
+  same_walls.locate = true;
+  return same_walls;
+}
+
+FrictionFindings friction_findings(const Findings& findings, double coefficient, const Run& run) {
+  FrictionFindings found;
+  found.coefficient = coefficient;
+  found.is_whole = !(run.end_time < findings.run.end_time);
+  const HalfCycles& rows = *run.half_cycles;
+  const auto first = first_row(rows);
+  if (!first) return found;
+  found.last_amplitude = rows.amplitude.back();
+  found.last_impact = last_with_impact(rows);
+  if (found.last_impact) found.last_impact_time = rows.peak_time[found.last_impact->row];
+  if (findings.forced()) {
+    found.steady = steady_amplitude(rows);
+    return found;
+  }
+  if (const auto time = time_below(run, 0.1 * *findings.first_amplitude))
+    found.to_tenth = *time - rows.peak_time[*first];
+  if (const LossFactor loss = loss_before_failure(run); found.last_impact && has_loss(loss)) {
+    found.best = loss.amplitude[best_row(loss)];
+    found.best_eta = loss.eta[best_row(loss)];
+  }
+  return found;
+}
+
+// Simulates the scene with friction for as long as without.
+void find_frictions(Findings& findings, const Threads& threads) {
+  const Scene& scene = findings.subject.scene;
+  const std::optional<Scales>& scales = findings.subject.scales;
+  if (!scales || has_components(scene) || !findings.first_amplitude) return;
+  const double gravity = standard_gravity / scales->of(Dimension::acceleration);
+  std::vector<Scene> scenes(friction_coefficients.size(), scene);
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    scenes[i].until_amplitude.reset();
+    scenes[i].until_time = findings.run.end_time;
+    for (SceneDamper& damper : scenes[i].dampers) damper.friction = friction_coefficients[i] * gravity;
+  }
+  findings.engine_of_frictions = engine_for(scenes.front(), findings.run.engine);
+  findings.frictions.push_back(friction_findings(findings, 0, findings.run));
+  const std::vector<Run> runs = simulate_scenes(scenes, findings.engine_of_frictions, {}, threads);
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    findings.frictions.push_back(friction_findings(findings, friction_coefficients[i], runs[i]));
+}
+
 // Returns the windows of the history that are shown: from the release on, and where the motion is of
 // interest.
 std::vector<HistoryWindow> windows_of(const Findings& findings) {
@@ -188,6 +242,13 @@ void simulate_others(Findings& findings, const EnsembleOptions& options, const P
 
 }  // namespace
 
+std::optional<HalfCycleRow> last_with_impact(const HalfCycles& half_cycles) {
+  std::size_t rows = half_cycles.impacts.size();
+  while (rows > 0 && half_cycles.impacts[rows - 1] == 0) --rows;
+  if (rows == 0) return std::nullopt;
+  return HalfCycleRow{rows - 1, half_cycles.amplitude[rows - 1]};
+}
+
 Run Findings::run_of(std::size_t damper) const { return several() ? run_of_damper(run, damper) : run; }
 
 double Findings::energy_to_impacts() const {
@@ -222,6 +283,8 @@ Findings examine(const Subject& subject, const EnsembleOptions& ensemble, const 
     find_regimes(findings);
     find_spread(findings);
   }
+  progress("simulating the scene with friction");
+  find_frictions(findings, ensemble.threads);
   findings.loads = loads_of(findings.run);
   if (findings.several()) find_dampers(findings);
   if (findings.forced() && findings.first_amplitude) {

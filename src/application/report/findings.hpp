@@ -2,6 +2,7 @@
 // be predicted. Dimensionless throughout; the page shows them in units as well.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -59,6 +60,21 @@ struct DamperFindings {
   std::optional<Loads> loads;  // if it strikes a wall
 };
 
+// Returns the last half cycle that has an impact, if any has one.
+std::optional<HalfCycleRow> last_with_impact(const HalfCycles& half_cycles);
+
+// What friction in the cavities makes of a run, or its absence.
+struct FrictionFindings {
+  double coefficient = 0;                // mu
+  std::optional<double> to_tenth;        // of the amplitude, as in Fall, counted from the first peak
+  std::optional<double> best, best_eta;  // amplitude of the best damping and its loss factor, if any
+  std::optional<HalfCycleRow> last_impact;
+  double last_impact_time = 0;  // of its peak
+  double last_amplitude = 0;
+  std::optional<SteadyAmplitude> steady;  // forced motion with enough half cycles
+  bool is_whole = false;                  // as long as Findings::run
+};
+
 // An interval of the recorded history: its samples, both included.
 struct MotionWindow {
   std::size_t first = 0, last = 0;
@@ -94,6 +110,11 @@ struct Findings {
   std::vector<DamperFindings> dampers;
   std::size_t shown = 0, shown_when_chosen = 0;
 
+  // The run without friction, then with the coefficients friction_coefficients, for as long. Empty where
+  // friction is known or has no scale: of a dimensionless scene, of one with components.
+  std::vector<FrictionFindings> frictions;
+  Engine engine_of_frictions;  // of all but the first
+
   // Half cycle by half cycle, as far as every release has them: (greatest - least) / median of the amplitude.
   std::vector<double> spread;
   std::optional<std::size_t> lost_row;  // the first whose spread exceeds lost_spread
@@ -110,6 +131,7 @@ struct Findings {
   double energy_lost() const;
 };
 inline constexpr double lost_spread = 0.01;
+inline constexpr std::array friction_coefficients{0.1, 0.2, 0.3};
 
 // Is called from time to time, from any thread, with what is being done.
 using Progress = std::function<void(const std::string& doing)>;

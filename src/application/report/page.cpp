@@ -394,7 +394,7 @@ std::string scene_html(const Findings& findings) {
                 "velocities in units of εΩ, energies in units of Kε². A scene file may give masses in "
                 "kilograms and lengths in millimetres instead; this page then gives both.</p>\n";
   return scene_table(findings.subject) + (findings.several() ? dampers_table(findings.subject) : "") +
-         scales + engine_sentence(findings) + cavity_sentences(findings);
+         scales + engine_sentence(findings) + cavity_sentences(findings) + friction_html(findings);
 }
 
 }  // namespace impact_damper

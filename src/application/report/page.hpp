@@ -24,8 +24,10 @@ std::string page_html(const Findings& findings, const std::vector<Drawing>& draw
 std::string summary_html(const Findings& findings);   // a few sentences about everything
 std::string warnings_html(const Findings& findings);  // about the scene; may be empty
 std::string scene_html(const Findings& findings);
-std::string decay_html(const Findings& findings);         // of a forced motion: its amplitudes
-std::string loss_html(const Findings& findings);          // of a free motion
+std::string friction_html(
+    const Findings& findings);                     // what friction would change; empty if nothing is assumed
+std::string decay_html(const Findings& findings);  // of a forced motion: its amplitudes
+std::string loss_html(const Findings& findings);   // of a free motion
 std::string response_html(const Findings& findings);      // of a forced one
 std::string response_in_short(const Findings& findings);  // a few sentences; none if no motion is known
 std::string loads_html(const Findings& findings);

@@ -139,7 +139,10 @@ std::string clearance_html(const Findings& findings) {
       " lower, the clearance " + percent(tolerances.clearance) + " wider and the amplitude " +
       percent(tolerances.amplitude) +
       " smaller than thought, all at once. This scene's clearance is right for " +
-      quantities.length(rule.amplitude) + ".";
+      quantities.length(rule.amplitude) +
+      ". All this is for a secondary mass without friction: one that slides damps nothing below the "
+      "amplitude "
+      "at which friction holds it, whatever the clearance.";
   HtmlTable table{.caption = "The amplitude, in units of the clearance, beside the one at which impacts fail",
                   .heads = {"Clearance", "amplitude", "impacts fail at", "margin"}};
   const bool light = peak_loss(scene.damper().restitution) * scene.damper().mass_ratio < far_too_much;
@@ -224,6 +227,30 @@ std::string strikes(const Findings& findings, std::size_t damper, const MotionWi
   return who + " strikes a wall " + (count == 1 ? "once. " : count_html(count) + " times. ");
 }
 
+// Returns a sentence on what remains of the result if the masses slide; none if the page assumes nothing.
+std::string friction_in_short(const Findings& findings) {
+  if (findings.frictions.empty()) return "";
+  const Quantities quantities(findings.subject.scales);
+  const FrictionFindings& without = findings.frictions.front();
+  const FrictionFindings& typical = findings.frictions[2];
+  const std::string it = findings.several() ? "they" : "it";
+  std::string text =
+      "This is for " +
+      std::string(findings.several() ? "secondary masses that move" : "a secondary mass that moves") +
+      " without friction, as on rollers. If " + it + " slid with a coefficient of " +
+      number_html(typical.coefficient) + ", ";
+  text += typical.last_impact ? "the last impact would be at an amplitude of " +
+                                    quantities.length(typical.last_impact->amplitude)
+                              : it + " would never strike a wall";
+  const bool steady = typical.steady && without.steady;
+  const auto amplitude = [&](const FrictionFindings& its) {
+    return quantities.length(steady ? its.steady->greatest : its.last_amplitude);
+  };
+  return paragraph_html(text + ", and the amplitude " +
+                        (steady ? "in the last quarter of the run at most " : "at the end of the run ") +
+                        amplitude(typical) + " in place of " + amplitude(without) + ".");
+}
+
 }  // namespace
 
 std::string summary_html(const Findings& findings) {
@@ -241,7 +268,46 @@ std::string summary_html(const Findings& findings) {
     text += "There is no impact at all.";
   else if (lost > 0)
     text += "Impacts took " + percent_html(impacts / lost) + " of the energy that was lost.";
-  return paragraph_html(text);
+  if (const auto last = last_with_impact(*findings.run.half_cycles);
+      last && has_components(findings.subject.scene))
+    text += " The last one is at an amplitude of " + quantities.length(last->amplitude) + ", and " +
+            quantities.length(findings.last_amplitude) + " are left at the end of the run.";
+  return paragraph_html(text) + friction_in_short(findings);
+}
+
+std::string friction_html(const Findings& findings) {
+  if (findings.frictions.empty()) return "";
+  const Quantities quantities(findings.subject.scales);
+  const bool forced = findings.forced();
+  HtmlTable table{.caption = "What sliding would change: the same run, of " +
+                             quantities.time(findings.run.end_time) +
+                             ", with friction, by the engine <code>" +
+                             std::string(name_of(findings.engine_of_frictions)) + "</code>",
+                  .heads = {"Coefficient of friction"}};
+  const std::vector<std::string> heads =
+      forced ? std::vector<std::string>{"largest amplitude of the last quarter", "mean amplitude there"}
+             : std::vector<std::string>{"a tenth of the amplitude within", "damped best at",
+                                        "as by a viscous damping ratio of"};
+  table.heads.insert(table.heads.end(), heads.begin(), heads.end());
+  table.heads.insert(table.heads.end(), {"last impact at an amplitude of", "after", "amplitude at the end"});
+  for (const FrictionFindings& each : findings.frictions) {
+    std::vector<std::string>& row = table.rows.emplace_back();
+    const auto add = [&](bool is_there, auto&& cell) { row.push_back(is_there ? cell() : std::string("–")); };
+    row = {each.coefficient == 0 ? "none" : number_html(each.coefficient)};
+    if (!each.is_whole) row.front() += ", given up";
+    if (forced) {
+      add(each.steady.has_value(), [&] { return quantities.length(each.steady->greatest); });
+      add(each.steady.has_value(), [&] { return quantities.length(each.steady->mean); });
+    } else {
+      add(each.to_tenth.has_value(), [&] { return quantities.time(*each.to_tenth); });
+      add(each.best.has_value(), [&] { return quantities.length(*each.best); });
+      add(each.best.has_value(), [&] { return percent_html(*each.best_eta / 2); });
+    }
+    add(each.last_impact.has_value(), [&] { return quantities.length(each.last_impact->amplitude); });
+    add(each.last_impact.has_value(), [&] { return quantities.time(each.last_impact_time); });
+    row.push_back(quantities.length(each.last_amplitude));
+  }
+  return table_html(table);
 }
 
 std::string decay_html(const Findings& findings) {

@@ -13,6 +13,7 @@
 #include "impact_damper/analysis/design.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/base/number_text.hpp"
+#include "impact_damper/engines/checked.hpp"
 #include "impact_damper/io/json_parts.hpp"
 #include "impact_damper/io/run_file.hpp"
 
@@ -238,8 +239,24 @@ std::optional<double> failing_clearance(double amplitude, double restitution) {
   return restitution < 1 ? std::optional(amplitude / fold_amplitude(restitution)) : std::nullopt;
 }
 
-DesignRange default_masses(double mass) {
-  return {rounded(least_mass_ratio * mass), rounded(most_mass_ratio * mass)};
+// (M15.14).
+double locking_amplitude_of(const DesignQuestion& question, double secondary_mass) {
+  const SceneInUnits scene = *scene_of_design(question, {secondary_mass, 1}, 1).in_units;
+  const Scene plain = dimensionless(scene);
+  return scales_of(scene).length * locking_amplitude(1 / std::sqrt(1 + plain.damper().mass_ratio),
+                                                     plain.damper().holding() + plain.weight);
+}
+
+DesignRange default_masses(const DesignQuestion& question) {
+  constexpr double below = 0.99;  // far enough from the mass that is just held
+  const double mass = *question.scene.mass;
+  DesignRange masses{rounded(least_mass_ratio * mass), rounded(most_mass_ratio * mass)};
+  // The amplitude grows in proportion to 1 + nu.
+  if (const double held = locking_amplitude_of(question, masses.least); held > 0) {
+    const double most = rounded(below * (question.amplitude / held * (mass + masses.least) - mass));
+    if (most > masses.least) masses.most = std::min(masses.most, most);
+  }
+  return masses;
 }
 
 DesignRange default_clearances(double amplitude, double restitution) {
@@ -262,7 +279,17 @@ SceneInUnits with_unit_scales(const Scene& scene) {
   units.damping_ratio = scene.damping_ratio;
   units.initial_displacement = scene.x0;
   units.initial_velocity = scene.v0;
-  units.exciting_force = scene.force_amplitude * scales_of(units).of(Dimension::force);
+  const Scales scales = scales_of(units);
+  units.exciting_force = scene.force_amplitude * scales.of(Dimension::force);
+  if (!has_components(scene)) return units;
+  // Weight needs an inclination, of which 45 degrees leave friction the same gravity (M18.2).
+  const bool is_level = scene.weight == 0;
+  const double across = is_level ? 1 : scene.weight;
+  units.gravity = (is_level ? 1 : scene.weight * std::numbers::sqrt2) * scales.of(Dimension::acceleration);
+  units.inclination = is_level ? 0 : 45;
+  damper.friction_coefficient = scene.damper().friction / across;
+  damper.static_friction_coefficient = scene.damper().static_friction / across;
+  damper.drag = scene.damper().drag * scene.damper().mass_ratio * scales.of(Dimension::damping) / 2;
   return units;
 }
 
@@ -276,6 +303,42 @@ SceneInUnits with_defaults(SceneInUnits scene) {
     if (!*number) *number = 0;
   return scene;
 }
+
+namespace {
+
+// Returns the problem of an amplitude at which friction and weight hold the lightest mass of the question, or
+// else the heaviest, with what would suffice.
+std::optional<Problem> problem_of_locking(const DesignQuestion& question) {
+  const double asked = question.amplitude;
+  const auto& [lightest, heaviest] = question.secondary_mass;
+  const double mass = asked > locking_amplitude_of(question, lightest) ? heaviest : lightest;
+  const double held = locking_amplitude_of(question, mass);
+  if (asked > held || held == 0) return std::nullopt;
+  DesignQuestion smooth = question;
+  DamperInUnits& damper = smooth.scene.damper();
+  double coefficient = damper.static_friction_coefficient.value_or(0);
+  if (coefficient == 0) coefficient = damper.friction_coefficient.value_or(0);
+  damper.friction_coefficient = damper.static_friction_coefficient = 0;
+  const double by_weight = locking_amplitude_of(smooth, mass), left = asked - by_weight;
+  constexpr double below = 0.994;  // so that it is not held with what is told either, in three digits
+  const std::string sufficient =
+      left <= 0           ? filled("its weight alone holds it up to {}, only a flatter cavity would do",
+                                   rounded_text(by_weight, 4))
+      : question.in_units ? filled("with a coefficient of friction of {} it would move there",
+                                   rounded_text(below * coefficient * left / (held - by_weight), 3))
+                          : filled("with a friction of {} it would move there",
+                                   rounded_text(below * left / (1 + mass / *question.scene.mass), 3));
+  return Problem{"amplitude",
+                 filled("must be > {}, up to which {} a secondary mass of {} at rest in a cavity of any "
+                        "clearance, got {}: {}",
+                        rounded_text(held, 4),
+                        by_weight == 0     ? "friction keeps"
+                        : coefficient == 0 ? "its weight keeps"
+                                           : "friction and weight keep",
+                        mass, asked, sufficient)};
+}
+
+}  // namespace
 
 std::vector<Problem> problems_of(const DesignQuestion& question) {
   std::vector<Problem> problems;
@@ -328,8 +391,12 @@ std::vector<Problem> problems_of(const DesignQuestion& question) {
     const auto found =
         problems_of(*scene_of_design(question, corner, longest_followed * question.time).in_units);
     problems.insert(problems.end(), found.begin(), found.end());
-    if (!problems.empty()) break;
+    if (!problems.empty()) return problems;
   }
+  const SceneFile heaviest =
+      scene_of_design(question, {question.secondary_mass.most, question.clearance.most}, question.time);
+  problems = incompatibilities_of(dimensionless(*heaviest.in_units), question.engine);
+  if (const auto held = problem_of_locking(question)) problems.push_back(*held);
   return problems;
 }
 

@@ -41,15 +41,20 @@ struct DesignQuestion {
   std::int64_t seed = 1;                  // >= 0, for the search; the check uses seed + 1
 };
 inline constexpr double most_mass_ratio = 0.2, least_mass_ratio = 0.005;  // of the default range
-// Returns the default range, kg, for a primary mass; rounded to three digits.
-DesignRange default_masses(double mass);
+// Returns the amplitude, mm, up to which friction and weight hold a secondary mass, kg, on the left wall of a
+// cavity of any clearance (M15.14), about the place where the primary mass rests with it; 0 without them.
+double locking_amplitude_of(const DesignQuestion& question, double secondary_mass);
+// Returns the default range, kg, of those masses that are not held at the question's amplitude; if the
+// lightest one is, of all. Rounded to three digits.
+DesignRange default_masses(const DesignQuestion& question);
 // Returns the clearance with which impacts fail at an amplitude (M15.12); absent for e = 1: they never fail.
 std::optional<double> failing_clearance(double amplitude, double restitution);
 // Returns the default range: from the amplitude up to the clearance that (M12.3) recommends for it, at most
 // 100 times as wide, rounded to three digits.
 DesignRange default_clearances(double amplitude, double restitution);
 
-// Returns a dimensionless scene in units: M = 1 kg, K = 1 N/m, clearance 1 mm. Its second is 1/Omega_n.
+// Returns a dimensionless scene in units: M = 1 kg, K = 1 N/m, clearance 1 mm. Its second is 1/Omega_n. With
+// friction, weight or drag it has a gravity and an inclination that give these.
 SceneInUnits with_unit_scales(const Scene& scene);
 // Returns the scene with default values written out, so that tolerances can vary them.
 SceneInUnits with_defaults(SceneInUnits scene);

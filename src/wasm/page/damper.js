@@ -17,7 +17,14 @@ const parameters = [
   { name: "force_amplitude", symbol: "f₀", words: "force", from: 0, to: 0.05 },
   { name: "force_frequency", symbol: "ω", words: "its frequency", from: 0.5, to: 2, logarithmic: true },
   { name: "x0", symbol: "x₀", words: "release", from: 0.5, to: 20, logarithmic: true },
+  // Those of the cavity, which a scene does not have where they are 0.
+  { name: "friction", symbol: "φ", words: "friction", from: 0, to: 1, component: true },
+  { name: "weight", symbol: "γ", words: "weight", from: 0, to: 1, component: true },
+  { name: "drag", symbol: "d", words: "drag", from: 0, to: 2, component: true },
 ];
+// What an engine cannot have; the component element method can have all.
+const lacking = { exact: ["friction", "weight", "drag"], restitution: ["drag"] };
+const engineFor = (name, scene) => (lacking[name].some((each) => each in scene) ? "cem" : name);
 
 const presets = [
   { words: "ν = 2 %, e = 0.6", mass_ratio: 0.02, restitution: 0.6 },
@@ -28,6 +35,7 @@ const presets = [
 ];
 const usual = {
   mass_ratio: 0.02, restitution: 0.6, damping_ratio: 0, wall_stiffness: 10000, force_amplitude: 0, force_frequency: 1, x0: 6,
+  friction: 0, weight: 0, drag: 0,
 };
 
 const rounded = (value, digits = 3) => String(Number(value.toPrecision(digits))).replace("-", "−");
@@ -188,13 +196,14 @@ class Control {
  * Puts a damper into `place`. `simulate(scene, options)` gives a promise of a run, as core.js has it. It begins with
  * `parameters`, at the first half cycle whose amplitude is at most `amplitude`. The page's address carries the parameters if
  * the page is the damper's `own`, as in #mass_ratio=0.02&restitution=0.4; else a link does, which begins with the place's id.
+ * Only such a page has friction, weight and drag: it has the module that knows them.
  */
 function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun, own = false } = {}) {
   const decay = new Plot({ title: "Decay: drag along it", x: { words: "periods" }, y: { words: "amplitude", logarithmic: true } });
   const loss = new Plot({ title: "Loss factor over amplitude", x: { words: "amplitude", logarithmic: true }, y: { words: "η", logarithmic: true } });
   const phase = new Plot({ title: "The secondary mass in its cavity", x: { words: "place y" }, y: { words: "velocity" } });
   const drawing = new Drawing();
-  const controls = parameters.map((parameter) => new Control(parameter, () => {
+  const controls = parameters.filter(({ component }) => own || !component).map((parameter) => new Control(parameter, () => {
     preset.value = "";
     renew();
   }));
@@ -223,8 +232,9 @@ function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun
 
   const valueOf = (name) => controls.find(({ parameter }) => parameter.name === name).value;
   const isForced = () => valueOf("force_amplitude") !== 0;
+  const values = () => controls.filter(({ parameter, value }) => value !== 0 || !parameter.component).map(({ parameter, value }) => [parameter.name, value]);
   const scene = () => ({
-    ...Object.fromEntries(controls.map(({ parameter, value }) => [parameter.name, value])),
+    ...Object.fromEntries(values()),
     ...(isForced() ? { until_time: untilTimeForced } : { until_time: untilTime, until_amplitude: Math.min(untilAmplitude, valueOf("x0") / 10) }),
   });
 
@@ -245,12 +255,13 @@ function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun
       try {
         // Of a forced motion there is no loss factor to measure: its amplitude does not fall by losses alone.
         const record = ["half_cycles", "impacts", "contacts", "history", ...(forced ? [] : ["loss"])];
-        const result = await simulate(scene(), { engine: engine.value, record, history });
+        const simulated = scene();
+        const result = await simulate(simulated, { engine: engineFor(engine.value, simulated), record, history });
         problem.textContent = "";
         delete place.dataset.stale;
         motion = result;
         const first = !run;
-        if (fresh || first) show(result, forced);
+        if (fresh || first) show(result, simulated);
         const row = first ? run.half_cycles.amplitude.findIndex((each) => each <= begun) : -1;
         if (row >= 0) goTo(run.half_cycles.peak_time[row]);
         else showMoment();
@@ -264,7 +275,7 @@ function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun
   }
 
   function renew() {
-    const parts = new URLSearchParams(controls.map(({ parameter, value }) => [parameter.name, value]));
+    const parts = new URLSearchParams(values());
     parts.set("engine", engine.value);
     if (own) globalThis.history.replaceState(null, "", `#${parts}`);
     else link.href = `#${place.id}&${parts}`;
@@ -272,7 +283,12 @@ function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun
     ask({ fresh: true });
   }
 
-  function show(result, forced) {
+  // The largest amplitude at which friction and weight keep the mass at rest.
+  function lockingAmplitude({ mass_ratio, force_amplitude, force_frequency, friction = 0, weight = 0 }) {
+    return (friction + weight) * (force_amplitude ? force_frequency ** -2 : 1 + mass_ratio);
+  }
+
+  function show(result, simulated) {
     run = result;
     now = Math.min(now, run.end_time);
     time.max = run.end_time;
@@ -288,8 +304,11 @@ function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun
     loss.scale({ from: Math.min(least, largest / 10), to: largest },
       { from: eta.reduce((least, each) => Math.min(least, each), 1) * 0.8, to: eta.reduce((most, each) => Math.max(most, each), 1e-6) * 1.25 });
     loss.draw(run.loss.amplitude, run.loss.eta);
-    const words = forced ? "under a force" : Number.isFinite(run.bounce_down_end) ? `bounce-down ends at amplitude ${rounded(run.bounce_down_end)}` : "no bounce-down that ends";
+    const words = simulated.force_amplitude ? "under a force" : Number.isFinite(run.bounce_down_end) ? `bounce-down ends at amplitude ${rounded(run.bounce_down_end)}` : "no bounce-down that ends";
     summary.dataset.run = `${rounded(run.end_time / period)} periods to amplitude ${rounded(amplitude.at(-1) ?? 0)}, ${counted(run.impacts.time.length, "impact")}; ${words}`;
+    const locking = lockingAmplitude(simulated);
+    if (locking > 0) summary.dataset.run += `; held at rest up to amplitude ${rounded(locking)}`;
+    if (engineFor(engine.value, simulated) === "cem") summary.dataset.run += "; compliant walls, by the component element method";
     place.removeAttribute("aria-busy");
   }
 

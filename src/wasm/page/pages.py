@@ -21,13 +21,13 @@ def packed(content: bytes) -> str:
     return base64.b64encode(gzip.compress(content, mtime=0)).decode()
 
 
-def damper_pieces(wasm: Path = None) -> dict:
+def damper_pieces(wasm: Path = None, module: str = "impact-damper.wasm") -> dict:
     """What a page with a damper holds, also the report's, from what is built in a folder; without it the page's places for a
-    damper stay empty."""
+    damper stay empty. Friction, weight and drag need the larger module."""
     # Opened from a folder, a browser starts no worker that has imports and exports.
     worker = text("unpacked.js") + re.sub("^export ", "", text("../package/simulator.js"), flags=re.M) + text("worker.js")
-    module = packed((wasm / "package/impact-damper.wasm").read_bytes()) if wasm else ""
-    return {"style": text("damper.css"), "module": module, "worker": worker, "script": text("page.js", "damper.js")}
+    content = packed((wasm / "package" / module).read_bytes()) if wasm else ""
+    return {"style": text("damper.css"), "module": content, "worker": worker, "script": text("page.js", "damper.js")}
 
 
 def project_pieces(wasm: Path = None, commands: Path = None) -> dict:
@@ -54,7 +54,7 @@ def own_html() -> str:
 def main(wasm: Path):
     own = project_pieces(wasm)
     own |= {"own": own_html(), "script": text("page.js") + own["script"]}
-    for page, parts in (("damper.html", damper_pieces(wasm)), ("own.html", own)):
+    for page, parts in (("damper.html", damper_pieces(wasm, "impact-damper-lists.wasm")), ("own.html", own)):
         whole = re.sub("@([a-z]+)@", lambda found: parts[found[1]], text(page))
         (wasm / page).write_text(whole, encoding="utf-8")
 
