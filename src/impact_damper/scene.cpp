@@ -1,6 +1,11 @@
 #include "impact_damper/scene.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/text.hpp"
@@ -42,6 +47,47 @@ constexpr std::array<SceneField, 15> all_fields{{
      "drag of a fluid on the secondary mass in the cavity, d", component},
 }};
 
+std::string pair_text(const std::array<double, 2>& pair) {
+  return "[" + number_text(pair[0]) + ", " + number_text(pair[1]) + "]";
+}
+// Returns what is wrong with the pairs of a table of forces, or "". begins_at_zero: as a wall's does.
+std::string wrong_of_force(const Pairs& pairs, bool begins_at_zero) {
+  constexpr double least_slope = 1e-6, most_slope = 1e15;
+  if (pairs.size() < 2 || pairs.size() > most_pairs)
+    return "must be 2 to " + std::to_string(most_pairs) + " pairs, got " + std::to_string(pairs.size());
+  bool has_zero = false;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto& [at, force] = pairs[i];
+    if (!(std::abs(at) <= largest_number && std::abs(force) <= most_slope))
+      return "must have lengths up to " + number_text(largest_number) + " and forces up to " +
+             number_text(most_slope) + ", got " + pair_text(pairs[i]);
+    has_zero = has_zero || (at == 0 && force == 0);
+    if (i == 0) continue;
+    const double step = at - pairs[i - 1][0], slope = (force - pairs[i - 1][1]) / step;
+    if (!(step > 0 && slope >= least_slope && slope <= most_slope))
+      return "must rise from pair to pair, by a stiffness of " + number_text(least_slope) + " to " +
+             number_text(most_slope) + ", got " + pair_text(pairs[i]) + " after " + pair_text(pairs[i - 1]);
+  }
+  if (begins_at_zero && !(pairs[0][0] == 0 && pairs[0][1] == 0))
+    return "must begin with the pair [0, 0], got " + pair_text(pairs[0]);
+  return has_zero ? "" : "must have the pair [0, 0]";
+}
+// The same for pairs of speed and restitution.
+std::string wrong_of_restitution(const Pairs& pairs) {
+  if (pairs.size() > most_pairs)
+    return "must be at most " + std::to_string(most_pairs) + " pairs, got " + std::to_string(pairs.size());
+  double last = -1;
+  for (const auto& pair : pairs) {
+    const auto& [speed, e] = pair;
+    if (!(speed >= 0 && speed > last && speed <= largest_number))
+      return "must have speeds that rise, from 0 to " + number_text(largest_number) + ", got " +
+             pair_text(pair);
+    if (!within(0, 1).allows(e)) return "must have an e of 0 to 1 at each speed, got " + pair_text(pair);
+    last = speed;
+  }
+  return "";
+}
+
 constexpr bool is_clearance(const SceneField& field) { return field.number.is(&SceneDamper::clearance); }
 constexpr bool is_of_damper(const SceneField& field) { return field.number.of_damper; }
 
@@ -74,6 +120,13 @@ bool has_components(const Scene& scene) {
          });
 }
 
+bool has_laws(const Scene& scene) {
+  return !scene.spring.is_linear() || std::ranges::any_of(scene.dampers, [](const SceneDamper& each) {
+    return each.wall.law != WallForm::linear || !each.restitution_by_speed.empty();
+  });
+}
+bool is_ideal(const Scene& scene) { return !has_components(scene) && !has_laws(scene); }
+
 const SceneField& field_of(const SceneNumber& number) {
   const auto is_it = [&](const SceneField& field) {
     return field.number.own == number.own && field.number.of_damper == number.of_damper;
@@ -91,9 +144,11 @@ std::vector<NamedSceneNumber> numbers_of(const Scene& scene) {
     all.push_back({name_of(number), number, field.least, field.most});
   };
   for (const SceneField& field : scene_fields)
-    if (field.number.own || has_one_damper(scene)) add(field.number, field);
+    if (field.number.own || (has_one_damper(scene) && !is_replaced(scene.damper(), field.name)))
+      add(field.number, field);
   for (const SceneField& field : scene_damper_fields)
-    for (std::size_t i = 0; i < listed_dampers(scene); ++i) add({field.number.of_damper, i}, field);
+    for (std::size_t i = 0; i < listed_dampers(scene); ++i)
+      if (!is_replaced(scene.dampers[i], field.name)) add({field.number.of_damper, i}, field);
   return all;
 }
 
@@ -140,6 +195,26 @@ std::vector<Problem> problems_of(const Scene& scene) {
                           "must be 0 or at least the friction, " + number_text(damper.friction) + ", got " +
                               number_text(damper.static_friction)});
   }
+  const auto check_table = [&](const std::string& name, const std::string& wrong) {
+    if (!wrong.empty()) problems.push_back({name, wrong});
+  };
+  for (std::size_t i = 0; i < scene.dampers.size(); ++i) {
+    const SceneDamper& damper = scene.dampers[i];
+    const WallLaw& wall = damper.wall;
+    const auto name = [&](const char* own) { return one ? std::string(own) : damper_field(i, own); };
+    if (wall.law == WallForm::table) check_table(name("wall.pairs"), wrong_of_force(wall.pairs, true));
+    if (wall.law == WallForm::power) check(name("wall.exponent"), wall.exponent, within(1, 10));
+    if (wall.speed) check(name("wall.speed"), *wall.speed, within(1e-6, 1e6));
+    if (wall.law != WallForm::linear && damper.restitution < least_restitution_of_law)
+      problems.push_back({name("restitution"), "must be >= " + number_text(least_restitution_of_law) +
+                                                   " beside a wall with a law of its own, got " +
+                                                   number_text(damper.restitution)});
+    check_table(name("restitution"), wrong_of_restitution(damper.restitution_by_speed));
+  }
+  if (scene.spring.law == SpringForm::table)
+    check_table("spring.pairs", wrong_of_force(scene.spring.pairs, false));
+  else
+    check("spring.cubic", scene.spring.cubic, {0, largest_number}, true);
   const NumberRange stops{0, largest_number, false};
   if (scene.until_time) check("until_time", *scene.until_time, stops);
   if (scene.until_amplitude) check("until_amplitude", *scene.until_amplitude, stops);

@@ -19,8 +19,8 @@ Outcome recorded(const Checked& run, const Restitution&, Recorder& recorder) {
 }
 
 Outcome recorded(const Checked& run, const Cem&, Recorder& recorder) {
-  return has_one_damper(run.scene()) && !has_components(run.scene()) ? run_cem<double>(run, recorder)
-                                                                     : run_cem_dampers<double>(run, recorder);
+  return has_one_damper(run.scene()) && is_ideal(run.scene()) ? run_cem<double>(run, recorder)
+                                                              : run_cem_dampers<double>(run, recorder);
 }
 
 }  // namespace

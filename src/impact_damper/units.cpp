@@ -90,6 +90,25 @@ void set_components(Scene& made, const SceneInUnits& scene, const Scales& scales
   }
 }
 
+Pairs scaled(Pairs pairs, double first, double second) {
+  for (auto& each : pairs) each = {each[0] / first, each[1] / second};
+  return pairs;
+}
+// Sets the laws of the walls and of the primary spring, and a restitution that depends on the speed.
+void set_laws(Scene& made, const SceneInUnits& scene, const Scales& scales) {
+  const double mm = scales.of(length), newton = scales.of(force), per_second = scales.of(velocity);
+  made.spring = scene.spring;
+  made.spring.cubic *= mm * mm * mm / newton;
+  made.spring.pairs = scaled(scene.spring.pairs, mm, newton);
+  for (std::size_t i = 0; i < made.dampers.size(); ++i) {
+    const DamperInUnits& given = scene.dampers[i];
+    WallLaw& wall = made.dampers[i].wall = given.wall;
+    wall.pairs = scaled(given.wall.pairs, mm, newton);
+    if (wall.speed) *wall.speed /= per_second;
+    made.dampers[i].restitution_by_speed = scaled(given.restitution_by_speed, per_second, 1);
+  }
+}
+
 bool is_needed(std::string_view name) {
   return name == "mass" || name == "stiffness" || name == "secondary_mass" || name == "clearance";
 }
@@ -172,6 +191,8 @@ std::vector<Problem> problems_of(const SceneInUnits& scene) {
       if (field.number.of_damper)
         check(damper_field(i, field.name), field, scene.dampers[i].*field.number.of_damper);
   if (scene.dampers.empty()) problems.push_back({"dampers", "must be at least one, got 0"});
+  if (!(scene.spring.cubic >= 0))
+    problems.push_back({"spring.cubic", "must be >= 0, got " + number_text(scene.spring.cubic)});
   if (scene.damping && scene.damping_ratio)
     problems.push_back({"damping", "either it or damping_ratio must be given, got both"});
   if (!scene.until_seconds && !scene.until_millimetres)
@@ -211,6 +232,7 @@ Scene dimensionless(const SceneInUnits& scene) {
     }
   }
   set_components(made, scene, scales);
+  set_laws(made, scene, scales);
   return made;
 }
 
@@ -226,13 +248,15 @@ std::vector<std::string> cautions_of(const Scene& scene, const std::optional<Sca
     const std::string mass = "the secondary mass" + (one ? "" : " of damper " + std::to_string(i + 1));
     const double depth = std::max(-damper.y0, damper.y0 - damper.clearance);
     if (depth > 0)
-      cautions.push_back(mass + " begins " + text_of(depth, length) +
-                         (one && !scales ? " times the clearance" : "") +
-                         " outside its cavity, which reaches from 0 to " + text_of(damper.clearance, length) +
-                         " (" + (scales ? "secondary_displacement" : "y0") + " is " +
-                         text_of(damper.y0, length) + "): a compliant wall there holds an energy of " +
-                         text_of(damper.wall_stiffness * depth * depth / 2, energy) + ", beside " +
-                         text_of(scene.x0 * scene.x0 / 2, energy) + " in the primary spring");
+      cautions.push_back(
+          mass + " begins " + text_of(depth, length) + (one && !scales ? " times the clearance" : "") +
+          " outside its cavity, which reaches from 0 to " + text_of(damper.clearance, length) + " (" +
+          (scales ? "secondary_displacement" : "y0") + " is " + text_of(damper.y0, length) + "): " +
+          (damper.wall.law == WallForm::linear && scene.spring.is_linear()
+               ? "a compliant wall there holds an energy of " +
+                     text_of(damper.wall_stiffness * depth * depth / 2, energy) + ", beside " +
+                     text_of(scene.x0 * scene.x0 / 2, energy) + " in the primary spring"
+               : "a wall there is pressed together"));
     if (damper.mass_ratio > 1)
       cautions.push_back(mass + " is " + rounded_text(damper.mass_ratio, 4) +
                          " times as heavy as the primary mass" +

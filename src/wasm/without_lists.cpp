@@ -13,8 +13,8 @@ namespace {
 
 [[noreturn]] void refuse() {
   throw std::invalid_argument(
-      "scene: this module knows no lists of dampers, friction, weight and drag, impact-damper-lists.wasm "
-      "does");
+      "scene: this module knows no lists of dampers, friction, weight and drag, and no laws of walls and "
+      "springs, impact-damper-lists.wasm does");
 }
 
 }  // namespace

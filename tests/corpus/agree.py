@@ -33,6 +33,7 @@ BEYOND_SCHEMAS = {
         "must be as long as the section's first column", "must hold a loss for each of the",
         r"/(half_cycles|energy|history)/dampers: must be as many as in the scene, \d+, got"],
     "It compares no elements.": [
+        "must rise from pair to pair", r"must (begin with|have) the pair \[0, 0\]",
         "must not be below the one before it", "must not be before its begin", "must be below that of the window before",
         "must be two different numbers", "must name each number once",
         r"must be \[least, most\].* got \[-?[0-9.e+-]+, -?[0-9.e+-]+\]$",
@@ -42,6 +43,9 @@ BEYOND_SCHEMAS = {
     "It multiplies nothing.": [r"must give at most \d+ points", r"must make at most \d+ runs in all"],
     "A range that depends on another part of the file.": [
         r"/(grid|samples/numbers)/\d+/(from|to|values/\d+): must be a number .*, got -?\d",
+        r"/wall/speed: must be >= ", r"/spring/cubic: must be >= 0 and <= 1e\+12, got \d", "/spring/cubic: must be 0 or of",
+        "must have lengths up to", r"must have speeds that rise, from 0 to 1e\+12, got \[\d",
+        r"/restitution: must be >= 0\.001 beside a wall with a law of its own, got",
         "with the restitution engine, whose walls are rigid, got", ", its clearance, as walls are rigid, got",
         r"/damper/\d+: must be a whole number >= 1 and <= \d+, got ([1-9]\d{0,2}|1000)(\.0)?$"],
     "One of two lists must not be empty.": ["/grid: a number that varies must be given"],

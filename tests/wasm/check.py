@@ -171,7 +171,7 @@ class Package(unittest.TestCase):
         """
         (self.stranger / "lists.mjs").write_text(script)
         told = json.loads(call("node", "lists.mjs", cwd=self.stranger))
-        words = ["invalid", "scene: this module knows no lists of dampers, friction, weight and drag, impact-damper-lists.wasm does"]
+        words = ["invalid", "scene: this module knows no lists of dampers, friction, weight and drag, and no laws of walls and springs, impact-damper-lists.wasm does"]
         self.assertEqual(told, [9] + 3 * [9, words])
 
     def test_the_module_for_one_damper_is_small(self):

@@ -154,6 +154,9 @@ SceneFile scene_of(Arguments& arguments, Stops stops) {
     if (field.number.of_damper && !has_one_damper(scene) && arguments.given(option_of(field.name)))
       arguments.reject(option_of(field.name),
                        "is for one damper: " + *name + " has a list, which sets their numbers");
+    else if (field.number.of_damper && is_replaced(scene.damper(), field.name) &&
+             arguments.given(option_of(field.name)))
+      arguments.reject(option_of(field.name), "has no effect: " + *name + " has a table in place of it");
   }
   if (stops == Stops::ignored) {
     scene.until_time = 1;  // a scene needs one
@@ -186,6 +189,13 @@ void require_one_ideal_damper(const Scene& scene, const std::string& scene_file)
                      {{"",
                        "friction, weight and drag are not for this command, which does not take "
                        "them into account: leave them out"}});
+  if (has_laws(scene))
+    throw InputError(
+        scene_file,
+        {{"",
+          "walls, springs and restitutions with laws of their own are not for this command, which "
+          "does not take them into account: leave them out, or use run with --engine cem or "
+          "restitution"}});
 }
 
 void reject_options_beside_units(Arguments& arguments, const SceneFile& scene, const std::string& instead) {
@@ -270,7 +280,11 @@ void reject_as_options(std::vector<Problem> problems, const std::string& scene_f
     for (Problem& problem : problems) problem.field = pointer_of(problem.field);
     throw InputError(scene_file, problems);
   }
-  for (Problem& problem : problems) problem.field = option_of(problem.field);
+  for (Problem& problem : problems) {
+    if (problem.field == "wall" || problem.field == "spring")  // of the scene's file alone
+      problem = {"scene", problem.field + " " + problem.message};
+    problem.field = option_of(problem.field);
+  }
   throw UsageError(std::move(problems));
 }
 

@@ -197,7 +197,7 @@ std::optional<Drawing> loss(const Findings& findings) {
   if (!findings.loss_after_failure.eta.empty())
     block("failed-1", "after impact failure", findings.loss_after_failure);
   drawing.table.add_if_any(loss_band(findings));
-  if (has_components(findings.subject.scene)) return drawing;  // the closed forms are for none
+  if (!is_ideal(findings.subject.scene)) return drawing;  // the closed forms are for none
   if (findings.several()) {
     TableBlock folds{.name = "folds",
                      .columns = {{"amplitude", "below it impacts of a damper fail, in units of epsilon"}}};

@@ -35,7 +35,7 @@ std::string caption_of(const std::string& name, const Findings& findings) {
     return "Each half cycle's peak amplitude. Pale: the least and greatest of all releases, where they part.";
   if (name == "loss")
     return std::string("The loss factor over the amplitude; a decay runs from right to left. Pale: all ") +
-           (has_components(findings.subject.scene) ? "releases."
+           (!is_ideal(findings.subject.scene) ? "releases."
             : findings.several()
                 ? "releases. Marks: where by the closed form for a light mass the impacts of a damper fail."
                 : "releases. Thin: closed forms for a light mass, with the primary system's own damping put "

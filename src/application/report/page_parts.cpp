@@ -335,17 +335,20 @@ std::string loss_html(const Findings& findings) {
   if (!findings.first_amplitude)
     return paragraph_html("Without half cycles there is no loss factor to read off.");
   const Scene& scene = findings.subject.scene;
-  const bool ideal = !has_components(scene);
+  const bool ideal = is_ideal(scene);
   if (findings.best) {
     const std::string best = paragraph_html(best_sentences(findings));
     if (!ideal)
       return best + paragraph_html(
-                        "The closed forms for the best clearance are for a secondary mass without "
-                        "friction, weight and drag: here they recommend none.");
+                        "The closed forms for the best clearance are for a secondary mass " +
+                        std::string(has_components(scene)
+                                        ? "without friction, weight and drag"
+                                        : "of one restitution, between linear walls and on a linear spring") +
+                        ": here they recommend none.");
     return best +
            (findings.several() ? "" : paragraph_html(theory_sentences(findings)) + clearance_html(findings));
   }
-  if (findings.run.impacts->time.empty() && !ideal)
+  if (findings.run.impacts->time.empty() && has_components(scene))
     return paragraph_html(
         "There is no impact: what damps is viscous damping, and friction and drag in the "
         "cavity where the secondary mass slides.");
@@ -446,7 +449,9 @@ std::string loads_html(const Findings& findings) {
     text =
         "The walls of this engine are rigid and impacts take no time: the force and the duration of a "
         "contact follow from the stiffness of the walls, with the engine <code>" +
-        std::string(has_components(scene) ? Cem::name : Exact::name) + "</code>. ";
+        std::string(is_ideal(scene) ? Exact::name : Cem::name) + "</code>. ";
+  } else if (scene.damper().wall.law != WallForm::linear) {
+    text = "The walls have a law of their own: there is no closed form for the force of a contact. ";
   } else {
     text =
         "The walls are so soft that a contact lasts a good part of a period: there is no closed form for its "
@@ -538,7 +543,7 @@ std::string dampers_html(const Findings& findings) {
     const SceneDamper& damper = scene.dampers[n];
     const DamperFindings& found = findings.dampers[n];
     const double e = damper.restitution, c = damper.clearance;
-    const bool has_form = e > 0 && e < 1 && !has_components(scene);
+    const bool has_form = e > 0 && e < 1 && is_ideal(scene);
     const auto& [missed, for_good] = found.failure;
     const auto failed = missed ? missed : for_good;
     std::vector<std::string>& row = table.rows.emplace_back();

@@ -187,7 +187,7 @@ void add_phase_parts(const Run& run, Table& table) {
   table.add_if_any(impacts_block(*run.impacts));
   table.add_if_any(stuck_block(*run.half_cycles, stuck_phases(run)));
   table.add_if_any(windows_block(run));
-  if (!has_components(run.scene)) add_theory(run, table);
+  if (is_ideal(run.scene)) add_theory(run, table);
 }
 
 void add_phase_blocks(const Figure& figure, const FigureRun& source, Table& table) {

@@ -166,7 +166,8 @@ Number largest_impact_speed(RunFindings& found, double) {
 
 // Of `damper`, whose impacts have number i if there are several.
 Number largest_wall_force(RunFindings& found, const SceneDamper& damper, std::size_t i) {
-  if (has_rigid_walls(found.engine) || nominal_contact_time(damper) > longest_short_contact)
+  if (has_rigid_walls(found.engine) || damper.wall.law != WallForm::linear ||
+      nominal_contact_time(damper) > longest_short_contact)
     return std::nullopt;
   const Calibration calibration = calibration_of(found.engine);
   const Impacts& impacts = *found.run().impacts;

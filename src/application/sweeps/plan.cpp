@@ -96,10 +96,11 @@ std::vector<Variable> variables_of(const SceneFile& scene) {
       if (field.becomes == "until_time" || field.becomes == "until_amplitude") continue;
       const bool in_list = field.number.of_damper && dampers > 1;
       for (std::size_t i = 0; i < (in_list ? dampers : 1); ++i)
-        variables.push_back({.name = std::string(field.name) + (in_list ? "_" + std::to_string(i + 1) : ""),
-                             .unit = unit_of(field.dimension, true),
-                             .range = field.range,
-                             .number_in_units = {field.number, i}});
+        if (!field.number.of_damper || !is_replaced(scene.in_units->dampers[i], field.name))
+          variables.push_back({.name = std::string(field.name) + (in_list ? "_" + std::to_string(i + 1) : ""),
+                               .unit = unit_of(field.dimension, true),
+                               .range = field.range,
+                               .number_in_units = {field.number, i}});
     }
     return variables;
   }
@@ -331,7 +332,7 @@ SceneFile read_scene_of(ObjectReader& object, const std::filesystem::path& folde
     return {};
   }
   ObjectReader scene = object.required_object("scene");
-  return read_scene_object(scene);
+  return read_scene_object(scene, &folder);
 }
 
 Plan read_fields(ObjectReader& object, const std::filesystem::path& folder, const FindFile& find) {

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "impact_damper/base/number_text.hpp"
+#include "impact_damper/motion/force_law.hpp"
+#include "impact_damper/motion/impact_law.hpp"
 
 namespace impact_damper {
 namespace {
@@ -71,7 +73,8 @@ class Examination {
   // An upper bound of |x| and |x'| in a run that only the force puts energy into: d/dt sqrt(2 E) <= f0. E is
   // counted from its least value, which the weight of the masses puts below that at x = y = 0.
   double fastest() const {
-    double twice_energy = scene_.x0 * scene_.x0 + scene_.v0 * scene_.v0;
+    double twice_energy =
+        std::max(scene_.x0 * scene_.x0, 2 * energy_in_spring(scene_.x0)) + scene_.v0 * scene_.v0;
     for (const SceneDamper& damper : scene_.dampers)
       twice_energy += damper.mass_ratio * (scene_.v0 + damper.w0) * (scene_.v0 + damper.w0);
     const double weight = scene_.weight * secondary_mass(scene_);
@@ -88,10 +91,11 @@ class Examination {
     double energy = 0;
     for (const SceneDamper& damper : scene_.dampers) {
       const double depth = is_rigid() ? 0 : std::max({0.0, -damper.y0, damper.y0 - damper.clearance});
-      energy += damper.wall_stiffness * depth * depth / 2;
+      energy += ForceLaw::of_wall(damper).energy(depth);
     }
     return energy;
   }
+  double energy_in_spring(double x) const { return ForceLaw::of_spring(scene_.spring).energy(x); }
 
   // How far two records of one event may be apart in time: rounding, and the component element method sees an
   // event up to a step late.
@@ -502,13 +506,13 @@ class Examination {
       weight += scene_.weight * nu * (x + y[i]);
       lifted += scene_.weight * nu * (std::abs(x) + std::abs(y[i]));
     }
-    const double tolerance = part * (moving / 2 + x * x / 2 + wall + lifted);
+    const double spring = energy_in_spring(x), tolerance = part * (moving / 2 + spring + wall + lifted);
     const std::string of = ", that of the state";
     equal(section + "kinetic", kinetic / 2, energy.kinetic, tolerance, of);
-    equal(section + "spring", x * x / 2, energy.spring, tolerance, of);
+    equal(section + "spring", spring, energy.spring, tolerance, of);
     equal(section + "wall", wall, energy.wall, tolerance, of);
     equal(section + "weight", weight, energy.weight, tolerance, of);
-    equal(section + "paper", (paper + x * x) / 2, energy.paper, tolerance, of);
+    equal(section + "paper", paper / 2 + spring, energy.paper, tolerance, of);
   }
 
   void examine_kinetic(const std::string& name, double DamperEnergy::*member, double v,
@@ -529,7 +533,9 @@ class Examination {
     for (const SceneDamper& damper : scene_.dampers) all += damper.mass_ratio;
     for (std::size_t i = 0; i < losses.size(); ++i) {
       const SceneDamper& damper = scene_.dampers[impacts.damper[i]];
-      const double nu = damper.mass_ratio, e = damper.restitution, w = impacts.relative_velocity[i];
+      const double nu = damper.mass_ratio, w = impacts.relative_velocity[i];
+      const Pairs& by_speed = damper.restitution_by_speed;
+      const double e = by_speed.empty() ? damper.restitution : restitution_at(by_speed, std::abs(w));
       const double least = nu * (1 - e) * (1 + e) * w * w / (2 * (1 + nu));
       const std::string field = "/energy/impact_loss/" + std::to_string(i);
       if (!several_) {

@@ -103,6 +103,24 @@ std::vector<Problem> incompatibilities_of(const Scene& scene, const Engine& engi
                                 number_text(value) + ": the exact and cem engines have drag"});
   }
   if (cem && cem->time_step) problems = problems_of(scene, *cem);
+  for (std::size_t i = 0; i < scene.dampers.size(); ++i) {
+    const SceneDamper& damper = scene.dampers[i];
+    const auto reject = [&](const char* name, const std::string& allowed, const std::string& who) {
+      problems.push_back(
+          {one ? std::string(name) : damper_field(i, name),
+           "must be " + allowed + " with the " + std::string(name_of(engine)) + " engine: only the " + who});
+    };
+    if (damper.wall.law != WallForm::linear && !cem)
+      reject("wall", "linear", "cem engine has walls with laws of their own");
+    if (!damper.restitution_by_speed.empty() && !std::holds_alternative<Restitution>(engine))
+      reject("restitution", "one number", "restitution engine has one that depends on the speed");
+    else if (!damper.restitution_by_speed.empty() && has_components(scene))
+      problems.push_back({one ? "restitution" : damper_field(i, "restitution"),
+                          "must be one number beside friction, weight and drag"});
+  }
+  if (!scene.spring.is_linear() && !cem)
+    problems.push_back({"spring", "must be linear with the " + std::string(name_of(engine)) +
+                                      " engine: only the cem engine has springs with laws of their own"});
   if (one && has_rigid_walls(engine) && !within(0, 1).allows(scene.damper().y0)) {
     problems.push_back({"y0", within(0, 1).describe("must be") + " with the " + std::string(name_of(engine)) +
                                   " engine, whose walls are rigid, got " + number_text(scene.damper().y0)});
@@ -114,6 +132,13 @@ void require_no_components(const Scene& scene) {
   if (has_components(scene))
     throw InvalidArguments(
         std::vector<Problem>{{"scene", "must have no friction, drag and weight for this function"}});
+}
+
+void require_ideal(const Scene& scene) {
+  require_no_components(scene);
+  if (has_laws(scene))
+    throw InvalidArguments(std::vector<Problem>{
+        {"scene", "must have no wall and spring with laws of their own for this function"}});
 }
 
 Checked checked(const Scene& scene, const Engine& engine, const Record& record) {

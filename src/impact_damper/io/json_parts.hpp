@@ -27,35 +27,49 @@ enum class Lacking { nothing, null, any, any_or_null };
 // Reads an engine; absent if any of it is not valid.
 std::optional<Engine> read_engine(ObjectReader& object, Lacking lacking = Lacking::any);
 
+// Read the law of a wall and a restitution that depends on the speed, and the law of the primary spring;
+// those that are missing stay as they are. folder: in which the files of tables lie; null: none can be read.
+void read_laws(ObjectReader& object, WallLaw& wall, Pairs& restitution, const std::filesystem::path* folder);
+void read_laws(ObjectReader& object, SpringLaw& spring, const std::filesystem::path* folder);
+
 // Reads the numbers of a scene by calling read(object, field, number, name), by the name that the number has
 // in a Problem, for each of `fields` or, if there is a list of dampers, for those of the scene itself and
 // those of `damper_fields` for each damper. A list that cannot be read leaves a scene without dampers.
+// Reads its laws as well (read_laws). A restitution that depends on the speed is not one of the numbers.
 template <class AnyScene, class Fields, class DamperFields, class Read>
 void read_numbers(ObjectReader& object, AnyScene& scene, const Fields& fields,
-                  const DamperFields& damper_fields, const Read& read) {
+                  const DamperFields& damper_fields, const Read& read,
+                  const std::filesystem::path* folder = nullptr) {
   const bool list = object.has("dampers");
+  read_laws(object, scene.spring, folder);
   for (const auto& field : fields) {
-    if (field.number.own || !list)
+    const bool is_law = field.name == "restitution" && object.is_array(field.name);
+    if (!(field.number.own || !list)) {
+      if (object.has(field.name)) object.reject(field.name, beside_dampers);
+    } else if (!is_law) {
       read(object, field, field.number.in(scene), std::string(field.name));
-    else if (object.has(field.name))
-      object.reject(field.name, beside_dampers);
+    }
   }
-  if (!list) return;
+  if (!list) return read_laws(object, scene.damper().wall, scene.damper().restitution_by_speed, folder);
+  if (object.has("wall")) object.reject("wall", beside_dampers);
   scene.dampers.clear();
   for (ObjectReader& damper : object.optional_objects("dampers", most_dampers, 1)) {
     auto& its = scene.dampers.emplace_back();
     for (const auto& field : damper_fields)
-      if (field.number.of_damper)
+      if (field.number.of_damper && !(field.name == "restitution" && damper.is_array(field.name)))
         read(damper, field, its.*field.number.of_damper, damper_field(scene.dampers.size() - 1, field.name));
+    read_laws(damper, its.wall, its.restitution_by_speed, folder);
   }
 }
 
 // Reads the fields of a scene from an object, which may hold others. Returns a scene without dampers if their
 // list cannot be read. Where a run is read, every field must be there, absent stops as null.
 enum class MissingFields { have_defaults, are_problems };
-Scene read_scene_fields(ObjectReader& object, MissingFields missing = MissingFields::have_defaults);
-// Reads a whole scene, dimensionless or in units. If there are problems, the result must not be used.
-SceneFile read_scene_object(ObjectReader& object);
+Scene read_scene_fields(ObjectReader& object, MissingFields missing = MissingFields::have_defaults,
+                        const std::filesystem::path* folder = nullptr);
+// Reads a whole scene, dimensionless or in units. If there are problems, the result must not be used. folder:
+// as for read_laws().
+SceneFile read_scene_object(ObjectReader& object, const std::filesystem::path* folder = nullptr);
 // Write the fields of a scene: all, those without the stops, and those that are given of a scene in units.
 void write_scene_fields(JsonWriter& out, const Scene& scene);
 void write_scene_numbers(JsonWriter& out, const Scene& scene);

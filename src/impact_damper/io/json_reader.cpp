@@ -505,6 +505,29 @@ bool ObjectReader::optional(std::string_view key, std::vector<std::string>& targ
   return true;
 }
 
+bool ObjectReader::optional(std::string_view key, std::vector<std::array<double, 2>>& target,
+                            std::size_t most) {
+  const Json* const value = find(key);
+  if (!value) return true;
+  if (!value->is_array()) return wrong(key, "an array", *value);
+  if (too_long(key, most, *value)) return false;
+  std::vector<std::array<double, 2>> pairs(value->size());
+  bool all_read = true;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const Json& given = (*value)[i];
+    const bool is_pair = given.is_array() && given.size() == 2;
+    if (is_pair && !read_into(pairs[i][0], given[0], {}) && !read_into(pairs[i][1], given[1], {})) continue;
+    all_read = false;
+    reject(key, i, "must be an array of two numbers, got " + described(given));
+  }
+  if (all_read) target = std::move(pairs);
+  return all_read;
+}
+
+bool ObjectReader::is_array(std::string_view key) const {
+  return holds(key) && (*object_)[std::string(key)].is_array();
+}
+
 std::optional<std::size_t> ObjectReader::word(std::string_view key,
                                               const std::vector<std::string_view>& words) {
   const Json* const value = find(key);

@@ -18,6 +18,7 @@
 // do not act on what was read before finish() has returned.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
@@ -80,6 +81,10 @@ class ObjectReader {
   bool required(std::string_view key, Target& target, Range... range) {
     return require(key) && optional(key, target, range...);
   }
+
+  // Reads at most `most` arrays of two numbers each.
+  bool optional(std::string_view key, std::vector<std::array<double, 2>>& target, std::size_t most);
+  bool is_array(std::string_view key) const;  // whether there is an array; leaves the key unknown
 
   // Reads one of the words name_of(value) gives for the `allowed` values.
   template <Enumeration Enum>

@@ -3,6 +3,7 @@
 // bits (number_text.hpp).
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <cstdint>
@@ -135,6 +136,13 @@ class JsonWriter {
     } else {
       text_ += "null";
     }
+  }
+  void value(const std::array<double, 2>& pair) {
+    text_ += '[';
+    value(pair[0]);
+    text_ += ',';
+    value(pair[1]);
+    text_ += ']';
   }
   void value(std::int64_t number) { append_number(text_, number); }
   void value(Enumeration auto enumerator) { value(name_of(enumerator)); }

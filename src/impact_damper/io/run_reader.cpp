@@ -162,7 +162,7 @@ void check_together(ObjectReader& scene, ObjectReader& engine, const Run& run) {
   if (!problems_of(run.scene).empty()) return;
   for (const Problem& problem : incompatibilities_of(run.scene, run.engine)) {
     const bool of_scene =
-        problem.field.starts_with("dampers") ||
+        problem.field.starts_with("dampers") || problem.field == "wall" || problem.field == "spring" ||
         std::ranges::find(scene_fields, problem.field, &SceneField::name) != scene_fields.end();
     (of_scene ? scene : engine).reject(problem);
   }

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "impact_damper/math/elementary.hpp"
+#include "impact_damper/motion/force_law.hpp"
 
 namespace impact_damper {
 namespace {
@@ -52,7 +53,15 @@ IterativeZeta zeta_m_iterative(double restitution, double tolerance) {
 double omega_m(const SceneDamper& damper) { return std::sqrt(damper.wall_stiffness / damper.mass_ratio); }
 
 double nominal_contact_time(const SceneDamper& damper) {
-  return std::numbers::pi / (omega_m(damper) * std::sqrt(1 + damper.mass_ratio));
+  double omega = omega_m(damper);
+  if (damper.wall.law !=
+      WallForm::linear) {  // of a linear wall as stiff as this one where it is pressed in most
+    const double speed = damper.wall.speed.value_or(1), nu = damper.mass_ratio;
+    const ForceLaw wall = ForceLaw::of_wall(damper);
+    const double overlap = wall.farthest(nu / (1 + nu) * speed * speed / 2);
+    omega = std::sqrt(wall.force(overlap) / overlap / nu);
+  }
+  return std::numbers::pi / (omega * std::sqrt(1 + damper.mass_ratio));
 }
 
 }  // namespace impact_damper

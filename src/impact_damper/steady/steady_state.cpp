@@ -187,6 +187,10 @@ std::vector<Problem> problems_of(const Scene& scene, const Engine& engine) {
         problems.push_back({name, "must be 0, got " + number_text(value) +
                                       ": steady motions are looked for without friction, weight and drag"});
     if (problems.empty()) problems = incompatibilities_of(scene, engine);
+    if (problems.empty() && has_laws(scene))
+      problems.push_back({"restitution",
+                          "must be one number: steady motions are looked for without one that "
+                          "depends on the speed, with which the restitution engine has runs"});
   }
   if (scene.force_amplitude == 0)
     problems.push_back({"force_amplitude", "must not be 0: without a force there is no steady motion"});

@@ -19,6 +19,37 @@
 
 namespace impact_damper {
 
+// A table of two numbers in each row, the first ascending; linear between.
+using Pairs = std::vector<std::array<double, 2>>;
+inline constexpr std::size_t most_pairs = 1000;
+// The least restitution of a wall that is not linear: its chi grows beyond bounds towards 0.
+inline constexpr double least_restitution_of_law = 1e-3;
+
+// Laws of force other than k q (docs/mathematics.md, 18.6). A table is of lengths and forces, divided by
+// epsilon and K epsilon; it rises, holds the pair 0, 0, and goes on beyond its ends as in its last piece. One
+// that begins with 0, 0 is of both directions.
+enum class WallForm { linear, power, table };
+// P(q), the force of a wall over its overlap, which 1 + chi w multiplies while the overlap grows with the
+// speed w. For the linear law it is k q + c w instead.
+struct WallLaw {
+  WallForm law = WallForm::linear;
+  double exponent = 1;          // of a power: k q^p, k being the damper's wall_stiffness; 1 to 10
+  Pairs pairs{};                // of a table, which begins with 0, 0; wall_stiffness then has no effect
+  std::optional<double> speed;  // at which chi is calibrated, 1e-6 to 1e6; absent: 1
+
+  bool operator==(const WallLaw&) const = default;
+};
+enum class SpringForm { cubic, table };
+// Of the primary mass: x + cubic x^3, or a table in place of both.
+struct SpringLaw {
+  SpringForm law = SpringForm::cubic;
+  double cubic = 0;  // c_3, 0 to 1e12
+  Pairs pairs{};
+
+  bool is_linear() const { return law == SpringForm::cubic && cubic == 0; }
+  bool operator==(const SpringLaw&) const = default;
+};
+
 // An impact damper on the primary mass: a cavity with a secondary mass.
 struct SceneDamper {
   double mass_ratio = 0.02;     // nu = m/M, 1e-9 to 1e6
@@ -35,6 +66,9 @@ struct SceneDamper {
   double friction = 0.0;         // phi, Coulomb friction where it slides
   double static_friction = 0.0;  // phi_s, the most that holds it where it does not; 0: phi, else at least phi
   double drag = 0.0;  // d, of the force d y', linear in the relative velocity; divided by m Omega_n
+  WallLaw wall{};
+  // Impact speed and restitution, constant beyond the ends; empty: `restitution` at every speed.
+  Pairs restitution_by_speed{};
 
   // phi_s, with its default filled in.
   double holding() const { return static_friction > 0 ? static_friction : friction; }
@@ -63,6 +97,7 @@ struct Scene {
   std::optional<double> until_amplitude;  // stop at the end of the first half cycle of a lower amplitude
   // 1 to most_dampers. Another order numbers the dampers of a run anew, and changes no computed number.
   std::vector<SceneDamper> dampers = std::vector<SceneDamper>(1);
+  SpringLaw spring{};
 
   // The first damper, which in a scene of one is the only one.
   SceneDamper& damper() { return dampers.front(); }
@@ -82,6 +117,18 @@ Problem problem_of_several();
 
 // Whether the scene has a component that the paper's model lacks: friction, drag or weight.
 bool has_components(const Scene& scene);
+// Whether a wall or the primary spring has a law other than the linear one, or a restitution depends on the
+// speed.
+bool has_laws(const Scene& scene);
+// Neither: the scene is of the paper's model.
+bool is_ideal(const Scene& scene);
+
+// Whether a law of a damper, dimensionless or in units, stands in place of this number of it.
+template <class AnyDamper>
+bool is_replaced(const AnyDamper& damper, std::string_view number) {
+  return (number == "restitution" && !damper.restitution_by_speed.empty()) ||
+         (number.ends_with("_stiffness") && damper.wall.law == WallForm::table);
+}
 
 // Where a number of a scene is kept: in itself or, if of_damper is not null, in one of its dampers.
 template <class Whole, class Damper, class Value>
@@ -142,8 +189,8 @@ struct NamedSceneNumber {
   SceneNumber number;
   double least, most;  // smallest and largest allowed value
 };
-// All numbers of a scene. With one damper: scene_fields. With a list: the scene's own among them, then each
-// number of scene_damper_fields for all dampers.
+// All numbers of a scene in place of which no law stands. With one damper: scene_fields. With a list: the
+// scene's own among them, then each number of scene_damper_fields for all dampers.
 std::vector<NamedSceneNumber> numbers_of(const Scene& scene);
 
 // The name of a damper's field in a Problem: "dampers[2].clearance", counted from 0.

@@ -78,6 +78,8 @@ struct DamperInUnits {
   // Coefficients of friction in the cavity, 0 if absent, the static one if absent the other; drag on the
   // velocity relative to the cavity, N s/m, 0 if absent.
   std::optional<double> friction_coefficient, static_friction_coefficient, drag;
+  WallLaw wall{};                // lengths in mm, forces in N, the speed in mm/s
+  Pairs restitution_by_speed{};  // speeds in mm/s
 };
 inline constexpr double standard_gravity = 9.80665;  // m/s^2
 
@@ -95,6 +97,7 @@ struct SceneInUnits {
   std::optional<double> inclination, gravity;
   std::optional<double> until_seconds, until_millimetres;              // as in Scene; s, mm; at least one
   std::vector<DamperInUnits> dampers = std::vector<DamperInUnits>(1);  // 1 to most_dampers
+  SpringLaw spring{};  // lengths in mm, forces in N, cubic in N/mm^3
 
   // The first damper, in a scene of one the only one.
   DamperInUnits& damper() { return dampers.front(); }

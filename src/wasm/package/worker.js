@@ -15,9 +15,9 @@ function answer(message) {
 }
 
 // Promises of the two modules, each compiled for the first scene that needs it: the smaller one knows scenes of one damper
-// without friction, weight and drag, the larger one all.
+// without friction, weight and drag, and without laws of walls and springs, the larger one all.
 let forOne, forAll;
-const ofAll = /^(dampers|weight|inclination|drag|(static_)?friction(_coefficient)?)$/;
+const ofAll = /^(dampers|wall|spring|weight|inclination|drag|(static_)?friction(_coefficient)?)$/;
 function simulatorFor(scene) {
   let keys = [];
   try {

@@ -52,11 +52,11 @@ Cem resolved(const Scene& scene, Cem options);
 // beyond the limit in flight, or longer than half a period of the forcing. Empty if there are none.
 std::vector<Problem> problems_of(const Scene& scene, const Cem& options);
 
-// Runs a scene of one damper without friction, drag and weight, for an observer with the members of Recorder.
-// Throws NumericalError where the numbers overflow.
+// Runs a scene of one damper without friction, drag, weight and laws of its own (is_ideal), for an observer
+// with the members of Recorder. Throws NumericalError where the numbers overflow.
 template <Scalar Real = double, RunObserver Observer>
 Outcome run_cem(const Checked& run, Observer& observer) {
-  require_no_components(run.scene());
+  require_ideal(run.scene());
   require_arithmetic();
   return CemEngine<Real, Observer, ForOne>(run.scene(), run.options<Cem>(), observer).run();
 }
@@ -64,7 +64,7 @@ Outcome run_cem(const Checked& run, Observer& observer) {
 // Runs any scene in the same way.
 template <Scalar Real = double, DampersObserver Observer>
 Outcome run_cem_dampers(const Checked& run, Observer& observer) {
-  if (run.scene().dampers.size() == 1 && !has_components(run.scene())) return run_cem<Real>(run, observer);
+  if (run.scene().dampers.size() == 1 && is_ideal(run.scene())) return run_cem<Real>(run, observer);
   require_arithmetic();
   return CemEngine<Real, Observer, ForSeveral>(run.scene(), run.options<Cem>(), observer).run();
 }

@@ -55,7 +55,10 @@ class CemBalance {
     forcing_work_ += weight * masses_.force_at(time) * s.v;
     for (const std::size_t i : masses_.coupled) {
       auto& m = masses_[i];
-      if (m.wall) m.work += weight * m.nu * m.c * s.w[i] * s.w[i];
+      if (masses_.law_of(i))
+        m.work += weight * m.nu * (masses_.resistance(i, s.q[i]) - m.drag) * s.w[i] * s.w[i];
+      else if (m.wall)
+        m.work += weight * m.nu * m.c * s.w[i] * s.w[i];
       if (m.drag != 0) m.drag_loss += weight * m.nu * m.drag * s.w[i] * s.w[i];
     }
   }
@@ -68,7 +71,7 @@ class CemBalance {
     forcing_work_ += sums.fv / 2;
     for (const std::size_t i : masses_.coupled) {
       auto& m = masses_[i];
-      if (m.wall) m.work += m.nu * m.c * m.sum_ww / (4 * h);
+      if (m.wall) m.work += m.nu * (masses_.has_laws() ? Real(1) : m.c) * m.sum_ww / (4 * h);
       if (m.drag != 0) m.drag_loss += m.nu * m.drag * m.sum_drag / (4 * h);
       m.sum_ww = m.sum_drag = 0;
     }
@@ -129,8 +132,13 @@ class CemBalance {
   Energy energy(const State& s) {
     Energy energy = energy_of_masses(s.x, s.v, masses_.size(), [&](std::size_t i) {
       const auto& m = masses_[i];
-      return EnergyTerms<Real>{m.nu, s.w[i], m.wall ? Real(m.k * s.q[i] * s.q[i]) : Real(0)};
+      return EnergyTerms<Real>{m.nu, s.w[i], masses_.wall_energy(i, s.q[i])};
     });
+    if (masses_.has_laws()) {
+      const double spring = masses_.primary_energy(s.x);
+      energy.paper += spring - energy.spring;
+      energy.spring = spring;
+    }
     if (masses_.weight != 0) {
       Real weight = 0;
       for (std::size_t i = 0; i < masses_.size(); ++i)

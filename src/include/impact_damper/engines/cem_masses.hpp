@@ -14,6 +14,7 @@
 
 #include "impact_damper/engines/cem_scheme.hpp"
 #include "impact_damper/engines/damper_order.hpp"
+#include "impact_damper/motion/force_law.hpp"
 #include "impact_damper/motion/lead.hpp"
 #include "impact_damper/run.hpp"
 
@@ -31,7 +32,7 @@ template <class Real>
 struct CemMass {
   std::int32_t number;  // in the scene
   Real nu, k, clearance;
-  Real c, omega_2;                       // of its wall, whether the mass is there or not
+  Real c, omega_2;  // of its wall, whether the mass is there or not; of a wall with a law (M18.16), at q
   std::int64_t steps_of_contact;         // small steps in the nominal contact time
   Real friction, static_friction, drag;  // phi, phi_s and d of chapter 18
   std::optional<Wall> wall{};            // the wall it is at, in contact or stuck
@@ -69,6 +70,17 @@ struct CemState {
   ForEach<Real> q, w;
 };
 
+// A wall with the force of (M18.13), divided by the secondary mass. The laws are computed in double.
+struct WallWithLaw {
+  double nu, chi;  // nu: 0 if the wall is linear
+  ForceLaw law;
+
+  double force(double q) const { return law.force(q) / nu; }
+  double resistance(double q) const { return chi * absolute(force(q)); }
+  // The derivative of the force by q, at the velocity w.
+  double slope(double q, double w = 0) const { return law.slope(q) / nu * (1 + chi * (q < 0 ? -w : w)); }
+};
+
 template <class Real, template <class> class ForEach>
 struct CemMasses {
   static constexpr bool one = std::is_same_v<ForEach<Real>, ForOne<Real>>;
@@ -79,7 +91,9 @@ struct CemMasses {
       : zeta(scene.damping_ratio),
         force{Real(scene.force_amplitude), Real(scene.force_frequency)},
         weight(scene.weight),
-        components_(impact_damper::has_components(scene)) {
+        components_(!is_ideal(scene)),
+        watches_slopes_(!options.unstable),
+        lagged_(options.damper == Damper::lagged) {
     const auto keep = [&](std::size_t place, std::int32_t number) {
       const SceneDamper& its = scene.dampers[number];
       const auto wall = regime_equations<Real>(scene, its, options.calibration, Regime::contact);
@@ -96,11 +110,14 @@ struct CemMasses {
       for (const std::int32_t number : damper_order(scene.dampers)) keep(place++, number);
       for (std::size_t i = 0; i < all.size(); ++i)
         if (all[i].drag != 0) coupled.push_back(i);
+      if (impact_damper::has_laws(scene)) set_laws(scene);
     }
   }
 
-  // Whether the scene has friction, drag or weight. With ForOne it has not.
+  // Whether the scene has friction, drag, weight or laws. With ForOne it has not.
   bool has_components() const { return !one && components_; }
+  // Whether a wall or the primary spring has a law other than the linear one.
+  bool has_laws() const { return !one && !laws_.empty(); }
   std::size_t size() const { return all.size(); }
   const CemMass<Real>& operator[](std::size_t i) const { return all[i]; }
   CemMass<Real>& operator[](std::size_t i) { return all[i]; }
@@ -163,7 +180,7 @@ struct CemMasses {
     for (std::size_t i = 0; i < size(); ++i) {
       CemMass<Real>& m = all[i];
       if (m.static_friction == 0) continue;
-      const Real at_rest = -(weight + m.spring() * s.q[i]);  // x'' that needs no friction
+      const Real at_rest = -(weight + spring_force(i, s.q[i]));  // x'' that needs no friction
       m.least_second = at_rest - m.static_friction;
       m.most_second = at_rest + m.static_friction;
       const bool is_freed = std::ranges::find(freed, i) != freed.end(), holds = s.w[i] == 0 && !is_freed;
@@ -204,7 +221,8 @@ struct CemMasses {
                        : s.q[i] > all[i].clearance ? std::optional(Wall::right)
                                                    : std::nullopt);
     if (has_components()) hold(Real(0), s, {});
-    const Real second = -(second_of_x(Real(0), s) + weight), third = s.v - force.amplitude * force.frequency;
+    const Real second = -(second_of_x(Real(0), s) + weight),
+               third = primary_slope(s.x) * s.v - force.amplitude * force.frequency;
     const Lead<Real> lead = lead_of_x(Real(2 * zeta), Real(1), force, force.phase(Real(0)), s.x, s.v);
     const bool by_lead = joins && lead.order > 3 && coupled.empty();
     const Real moves = by_lead ? Real(-lead.value) : Real(second + h / 3 * third);
@@ -232,11 +250,56 @@ struct CemMasses {
     const CemMass<Real>& m = all[i];
     return m.wall && !m.stuck ? m.c * s.w[i] + m.omega_2 * s.q[i] : Real(0);
   }
+  // The law of the wall at which the i-th mass is, if it is not linear; else null.
+  const WallWithLaw* law_of(std::size_t i) const {
+    return has_laws() && all[i].wall && laws_[i].nu != 0 ? &laws_[i] : nullptr;
+  }
+  // The force of q, divided by the secondary mass, and the coefficient of q'.
+  Real spring_force(std::size_t i, const Real& q) const {
+    const WallWithLaw* const law = law_of(i);
+    return law ? Real(law->force(double(q))) : Real(all[i].spring() * q);
+  }
+  Real resistance(std::size_t i, const Real& q) const {
+    const WallWithLaw* const law = law_of(i);
+    return law ? Real(law->resistance(double(q)) + all[i].drag) : all[i].resistance();
+  }
+  // Twice the energy of the wall at which the i-th mass is.
+  Real wall_energy(std::size_t i, const Real& q) const {
+    const WallWithLaw* const law = law_of(i);
+    return law ? Real(2 * law->law.energy(double(q))) : all[i].wall ? Real(all[i].k * q * q) : Real(0);
+  }
+  // The force of the primary spring, and its slope.
+  Real primary_force(const Real& x) const { return has_laws() ? Real(spring_->force(double(x))) : x; }
+  Real primary_slope(const Real& x) const { return has_laws() ? Real(spring_->slope(double(x))) : Real(1); }
+  double primary_energy(const Real& x) const { return spring_->energy(double(x)); }  // has_laws()
   // The force R of (M18.1) on the primary mass, divided by the secondary mass; 0 if that is stuck.
   Real force_of(const State& s, std::size_t i) const {
     const CemMass<Real>& m = all[i];
     if (!has_components()) return wall_force(s, i);
-    return m.stuck ? Real(0) : m.resistance() * s.w[i] + m.spring() * s.q[i] + m.friction * m.slides;
+    return m.stuck ? Real(0)
+                   : resistance(i, s.q[i]) * s.w[i] + spring_force(i, s.q[i]) + m.friction * m.slides;
+  }
+  // With laws: sets c and omega_2 of the walls to what they are at the present q (M18.16). Throws
+  // NumericalError where h is longer than the slopes there allow (M18.18). x: at `time`.
+  void set_secants(const Real& time, const Real& x, const Real& h) {
+    Real all_b{0};
+    bool stable = true;
+    for (const std::size_t i : coupled) {
+      CemMass<Real>& m = all[i];
+      Real slope = m.spring();
+      if (const WallWithLaw* const law = law_of(i)) {
+        const double q = double(m.now.x);
+        m.c = law->resistance(q);
+        m.omega_2 = q == 0 ? law->slope(q) : law->force(q) / q;
+        slope = law->slope(q);
+      }
+      if (!m.wall) continue;
+      const Real b = h * ((lagged_ ? Real(2 * m.c) : Real(0)) + h * slope);
+      stable = stable && b < 4;
+      all_b += 4 * m.nu * b / (4 - b);
+    }
+    if (watches_slopes_ && !(stable && all_b <= 4 - h * h * primary_slope(x)))
+      fail_of_slope(double(time), double(h));
   }
   // The sum of the primary mass and all masses at walls, divided by the primary mass.
   Real with_walls() const {
@@ -258,7 +321,7 @@ struct CemMasses {
     } else {
       for (const std::size_t i : coupled) sum += all[i].nu * wall_force(s, i);
     }
-    return (sum - (2 * zeta * s.v + s.x)) / mass;
+    return (sum - (2 * zeta * s.v + primary_force(s.x))) / mass;
   }
   Real second_of_x(const Real& time, const State& s) const { return second_of_x(time, s, joined); }
   Real second_of_q(const State& s, std::size_t i, const Real& x2) const {  // x2: x''
@@ -274,9 +337,12 @@ struct CemMasses {
   // The same of a mass that friction ceases to hold.
   Real third_where_freed(const Real& time, const State& s) const {
     const Real second = second_of_x(time, s);
-    Real sum = rate_of(force, time) - 2 * zeta * second - s.v;
-    for (const std::size_t i : coupled)
-      sum += all[i].nu * (all[i].resistance() * second_of_q(s, i, second) + all[i].spring() * s.w[i]);
+    Real sum = rate_of(force, time) - 2 * zeta * second - primary_slope(s.x) * s.v;
+    for (const std::size_t i : coupled) {
+      const WallWithLaw* const law = law_of(i);
+      const Real slope = law ? Real(law->slope(double(s.q[i]), double(s.w[i]))) : all[i].spring();
+      sum += all[i].nu * (resistance(i, s.q[i]) * second_of_q(s, i, second) + slope * s.w[i]);
+    }
     return -sum / joined;
   }
 
@@ -290,7 +356,19 @@ struct CemMasses {
   Real least_second{}, most_second{};  // limits of x'' while these stay stuck
 
  private:
-  bool components_;
+  void set_laws(const Scene& scene) {
+    spring_ = ForceLaw::of_spring(scene.spring);
+    for (const CemMass<Real>& m : all) {
+      const SceneDamper& its = scene.dampers[m.number];
+      const bool linear = its.wall.law == WallForm::linear;
+      laws_.push_back(
+          {linear ? 0 : its.mass_ratio, linear ? 0 : loss_factor_of(its), ForceLaw::of_wall(its)});
+    }
+  }
+
+  bool components_, watches_slopes_, lagged_;
+  std::vector<WallWithLaw> laws_;  // as `all`, empty if all is linear
+  std::optional<ForceLaw> spring_;
 };
 
 }  // namespace impact_damper

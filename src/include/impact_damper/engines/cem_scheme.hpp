@@ -161,6 +161,8 @@ Arc<Real> arc_of(const CemMoment<Real>& before, const CemMoment<Real>& now, cons
 }
 
 [[noreturn]] void fail_of_overflow(double time, double step);
+// Walls and springs with laws of their own: where a slope is met that time_step is too long for.
+[[noreturn]] void fail_of_slope(double time, double step);
 // Returns `steps` rounded up, at least 1 and at most 1e15.
 std::int64_t whole_steps(double steps);
 // Returns the largest whole multiple of h that is at most `step`; `step` itself where that is too many steps.

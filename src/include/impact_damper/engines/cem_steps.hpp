@@ -89,6 +89,7 @@ class CemSteps {
   // are in pace_.
   void renew_coefficients() {
     if constexpr (!one) {
+      if (masses_.has_laws()) masses_.set_secants(end(), now_.x, pace_.h);
       const Real h = pace_.h, outer = h * masses_.zeta, h_2 = h * h, joined = masses_.joined;
       const auto ahead = [&](const auto& m) {
         const Real of_wall = centred_ ? h * m.c / 2 : Real(0);
@@ -155,12 +156,16 @@ class CemSteps {
       : m.wall ? choose(std::integral_constant<Regime, Regime::contact>())
                : choose(std::integral_constant<Regime, Regime::flight>());
     } else {
-      masses_.has_components() ? take_of_all<true>(most, side, trend) : take_of_all<false>(most, side, trend);
+      masses_.has_laws()         ? take_of_all<true, true>(most, side, trend)
+      : masses_.has_components() ? take_of_all<true, false>(most, side, trend)
+                                 : take_of_all<false, false>(most, side, trend);
     }
   }
 
   // Returns h^2 x'' at the end of the last step, and at its beginning.
-  Real second_after() const { return second_at(now_, force_.f); }
+  Real second_after() const {
+    return masses_.has_laws() ? second_at<true>(now_, force_.f) : second_at<false>(now_, force_.f);
+  }
   Real second_before() const { return now_.dx - before_.dx; }
 
   // Returns the state at a time in the last step.
@@ -260,18 +265,19 @@ class CemSteps {
     }
   }
   // take() for a list.
-  template <bool components>
+  template <bool components, bool laws>
   void take_of_all(std::int64_t most, const Real side, const Real trend) {
     auto& masses = masses_.all;
     const auto& coupled = masses_.coupled;
     const bool forced = bool(masses_.force), stuck = masses_.joined > 1;
-    const Real dx_dx = of_x_.dx_dx, dx_x = of_x_.dx_x, h_2 = pace_.h * pace_.h;
+    Real dx_dx = of_x_.dx_dx, dx_x = of_x_.dx_x;
+    const Real h_2 = pace_.h * pace_.h;
     Real x = now_.x, dx = now_.dx, last_x, last_dx;
     bool uneventful;
     do {
       last_x = x;
       last_dx = dx;
-      dx = dx_dx * last_dx + dx_x * x;
+      dx = dx_dx * last_dx + dx_x * (laws ? masses_.primary_force(x) : x);
       for (const std::size_t i : coupled)
         dx += masses[i].dx_dq * masses[i].now.dx + masses[i].dx_q * masses[i].now.x;
       if (forced) dx += of_x_.dx_f * force_.f;
@@ -300,23 +306,30 @@ class CemSteps {
         for (const std::size_t i : coupled) {
           auto& m = masses[i];
           const Real w = m.before.dx + m.now.dx;
-          m.sum_ww += (centred_ ? w : 2 * m.before.dx) * w;
+          const Real square = (centred_ ? w : 2 * m.before.dx) * w;
+          m.sum_ww += laws ? m.c * square : square;
           if constexpr (components) m.sum_drag += w * w;
         }
       }
       if (forced) force_.advance();
+      ++number_;
+      if constexpr (laws) {  // the walls' secants change with q
+        now_ = {x, dx};
+        renew_coefficients();
+        dx_dx = of_x_.dx_dx, dx_x = of_x_.dx_x;
+      }
       if (stuck) {
-        const Real second = second_at({x, dx}, force_.f);
+        const Real second = second_at<laws>({x, dx}, force_.f);
         uneventful &= (second >= h_2 * masses_.least_second) & (second <= h_2 * masses_.most_second);
       }
-      ++number_;
     } while (uneventful && --most > 0);
     before_ = {last_x, last_dx};
     now_ = {x, dx};
   }
+  template <bool laws>
   Real second_at(const Moment& x, const Real& f) const {
     const CemStep<Real>& a = one ? pace_.stuck : of_x_;
-    Real second = (a.dx_dx - 1) * x.dx + a.dx_x * x.x + a.dx_f * f;
+    Real second = (a.dx_dx - 1) * x.dx + a.dx_x * (laws ? masses_.primary_force(x.x) : x.x) + a.dx_f * f;
     for (const std::size_t i : masses_.coupled)
       second += masses_[i].dx_dq * masses_[i].now.dx + masses_[i].dx_q * masses_[i].now.x;
     return one ? second : Real(second + of_x_1_);

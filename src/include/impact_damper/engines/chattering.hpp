@@ -110,6 +110,7 @@ class ChatteringLimit {
       if (!(masses_.nu[i] * square <= 2 * moves_little * per_moves) || masses_.away[i] != side) continue;
       const Real moves = masses_.nu[i] * square / per_moves;
       if (!(moves <= moves_little)) continue;
+      if (!masses_.held[i] && !masses_.is_settled(i, square_root(square), tolerance_)) continue;
       all.mass += masses_.nu[i];
       all.loses += loses(i);
       if (masses_.held[i]) continue;

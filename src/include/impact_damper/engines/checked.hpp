@@ -38,6 +38,8 @@ class Checked {
 // Throws InvalidArguments if the scene has friction, drag or weight: for the functions of engines that leave
 // them out. run_cem_dampers() and run_restitution_with_components() take such scenes.
 void require_no_components(const Scene& scene);
+// Throws it if walls or the primary spring have laws of their own, too (is_ideal).
+void require_ideal(const Scene& scene);
 
 // Returns the scene, and the engine with its options that depend on the scene filled in: the time step of cem
 // and the limits of a run (Budget). Throws InvalidArguments with every problem of the scene, the engine, the

@@ -17,11 +17,12 @@ namespace impact_damper {
 inline std::vector<std::int32_t> damper_order(std::span<const SceneDamper> dampers) {
   std::vector<std::int32_t> order(dampers.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](std::int32_t one, std::int32_t other) {
-    const auto key = [&](std::int32_t i) {
+  std::sort(order.begin(), order.end(), [&](const std::int32_t& one, const std::int32_t& other) {
+    const auto key = [&](const std::int32_t& i) {
       const SceneDamper& d = dampers[i];
-      return std::tuple(d.clearance, d.mass_ratio, d.restitution, d.y0, d.w0, d.wall_stiffness, d.friction,
-                        d.static_friction, d.drag, i);
+      return std::tie(d.clearance, d.mass_ratio, d.restitution, d.y0, d.w0, d.wall_stiffness, d.friction,
+                      d.static_friction, d.drag, d.wall.law, d.wall.exponent, d.wall.speed, d.wall.pairs,
+                      d.restitution_by_speed, i);
     };
     return key(one) < key(other);
   });

@@ -13,6 +13,9 @@
 // (M6.3) allows. Chattering that begins with w takes about ln(2 m w / (tol a^2 (1-e))) / ln(1/e) impacts
 // until then; the energy of the impacts left out, nu w^2 / (2 (1+nu)), is recorded as bounce_down_loss.
 //
+// A restitution that depends on the speed is e(|w|); then the limit is also for impacts so slow that all have
+// the same (M18.19).
+//
 // Sticking masses move by (M2.3) until the wall's push on the secondary mass, nu x'', vanishes.
 #pragma once
 
@@ -22,6 +25,7 @@
 #include "impact_damper/engines/run_tracker.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/motion/flight.hpp"
+#include "impact_damper/motion/impact_law.hpp"
 #include "impact_damper/motion/sticking.hpp"
 
 namespace impact_damper {
@@ -40,7 +44,10 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
                         Observer& observer) {
   require_arithmetic();
   RunTracker<Real, Force, Observer> tracker(scene, system, options.budget, options.max_steps, observer);
-  const Real nu = system.nu, e = system.e, zeta = system.zeta, tolerance = options.accumulation_tolerance;
+  const Pairs& by_speed = scene.damper().restitution_by_speed;
+  const bool varies = !by_speed.empty();
+  const Real nu = system.nu, e = varies ? restitution_at(by_speed, Real(0)) : system.e, zeta = system.zeta,
+             tolerance = options.accumulation_tolerance;
 
   State<Real> state{Real(scene.x0), Real(scene.v0), Real(scene.damper().y0), Real(scene.damper().w0)};
   tracker.begin(state, Real(0));
@@ -60,6 +67,7 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
     accumulation = 0;
     if (speed == 0) return flight.sticks();
     if (!(push > 0) || e == 1) return false;
+    if (varies && !is_settled(by_speed, speed, tolerance)) return false;
     accumulation = 2 * speed / (push * (1 - e));
     const Real change_of_push = -away * y[3];
     // The acceleration changes in flight, and by the impacts (M6.2).
@@ -107,13 +115,14 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
     if (!met) break;
     wall = *met;
     if (!tracker.impact(wall, state)) break;
+    const Real now_e = varies ? restitution_at(by_speed, absolute(state.w)) : e;
     if (observer.wants_energy()) {
-      const Real loss = nu * (1 - e) * (1 + e) * state.w * state.w / (2 * (1 + nu));
+      const Real loss = nu * (1 - now_e) * (1 + now_e) * state.w * state.w / (2 * (1 + nu));
       losses += loss;
       observer.energy_balance().impact_loss.push_back(double(loss));
     }
-    state.v += nu * (1 + e) * state.w / (1 + nu);
-    state.w *= -e;
+    state.v += nu * (1 + now_e) * state.w / (1 + nu);
+    state.w *= -now_e;
     on_wall = true;
   }
   tracker.finish(state, Real(0), losses);

@@ -66,7 +66,7 @@ class EngineWithRigidWalls : protected EngineOfDampers<Real, Force, Observer> {
 
  private:
   MassAtWall<Real> mass_at_wall(std::size_t i) const {
-    return {i, masses_.nu[i], masses_.e[i], masses_.away[i], masses_.u1[i]};
+    return {i, masses_.nu[i], masses_.restitution_at(i, masses_.u1[i]), masses_.away[i], masses_.u1[i]};
   }
 
   std::vector<MassAtWall<Real>> at_walls_, reported_;  // reported_: those that meet their walls

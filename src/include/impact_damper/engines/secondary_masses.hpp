@@ -14,6 +14,7 @@
 #include "impact_damper/engines/observer.hpp"
 #include "impact_damper/motion/energy.hpp"
 #include "impact_damper/motion/flight.hpp"
+#include "impact_damper/motion/impact_law.hpp"
 
 namespace impact_damper {
 
@@ -27,6 +28,11 @@ struct SecondaryMasses {
       const bool right = Real(d.y0) > Real(d.clearance) / 2;
       nu.push_back(Real(d.mass_ratio));
       e.push_back(Real(d.restitution));
+      if (!d.restitution_by_speed.empty()) {
+        e.back() = impact_damper::restitution_at(d.restitution_by_speed, Real(0));
+        by_speed.resize(number.size());
+        by_speed[e.size() - 1] = d.restitution_by_speed;
+      }
       clearance.push_back(Real(d.clearance));
       away.push_back(right ? Real(-1) : Real(1));
       u.push_back(right ? Real(Real(d.clearance) - Real(d.y0)) : Real(d.y0));
@@ -36,6 +42,16 @@ struct SecondaryMasses {
     held_since.resize(size());
   }
   std::size_t size() const { return number.size(); }
+
+  // The restitution of an impact with u' = speed <= 0.
+  Real restitution_at(std::size_t i, const Real& speed) const {
+    return varies(i) ? impact_damper::restitution_at(by_speed[i], absolute(speed)) : e[i];
+  }
+  // Whether it is that at rest for all impacts up to this speed (M18.19).
+  bool is_settled(std::size_t i, const Real& speed, const Real& tolerance) const {
+    return !varies(i) || impact_damper::is_settled(by_speed[i], speed, tolerance);
+  }
+  bool varies(std::size_t i) const { return !by_speed.empty() && !by_speed[i].empty(); }
 
   bool rests(std::size_t i) const { return u[i] == 0 && u1[i] == 0; }
   Wall wall(std::size_t i) const { return away[i] > 0 ? Wall::left : Wall::right; }
@@ -115,8 +131,9 @@ struct SecondaryMasses {
     return first;
   }
 
-  std::vector<std::int32_t> number;  // in the scene
-  std::vector<Real> nu, e, clearance;
+  std::vector<std::int32_t> number;    // in the scene
+  std::vector<Real> nu, e, clearance;  // e: where it depends on the speed, at rest
+  std::vector<Pairs> by_speed;         // SceneDamper::restitution_by_speed; empty if all are
   // The wall that the mass left last, at the release the nearer one: 1 left, -1 right.
   std::vector<Real> away;
   std::vector<Real> u, u1;  // distance from that wall, and its derivative

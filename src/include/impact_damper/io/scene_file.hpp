@@ -16,6 +16,16 @@
 // unit_fields of a damper, in place of the keys of one damper beside the scene's own:
 //
 //   {"dampers": [{"mass_ratio": 0.02}, {"mass_ratio": 0.01, "clearance": 0.3}], "until_time": 100}
+//
+// A wall and the primary spring may have laws of their own (WallLaw, SpringLaw), with lengths in mm, speeds
+// in mm/s, forces in N and `cubic` in N/mm^3 where the scene is in units; a restitution may be an array of
+// pairs of speed and e:
+//
+//   {"wall": {"law": "power", "exponent": 1.5, "speed": 1}, "spring": {"cubic": 0.1}, "until_time": 100}
+//   {"wall": {"law": "table", "pairs": [[0, 0], [0.01, 50], [0.02, 300]]},
+//    "spring": {"law": "table", "file": "spring.csv"}, "until_time": 100}
+//
+// A table's file is a CSV file of two columns beside that of the scene; a run has its numbers.
 #pragma once
 
 #include <filesystem>
@@ -29,6 +39,7 @@ namespace impact_damper {
 
 // Enough for most_dampers, each number with all its digits.
 inline constexpr FileKind scene_kind{"scene", 1 << 20};
+inline constexpr FileKind table_kind{"table of pairs", 1 << 16};
 
 struct SceneFile {
   Scene scene;                   // dimensionless, also of a scene in units

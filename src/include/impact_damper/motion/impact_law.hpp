@@ -1,5 +1,5 @@
 // The impacts of one instant, with rigid walls and several dampers: Newton's law of restitution in Moreau's
-// form (M17.2), (M17.3).
+// form (M17.2), (M17.3), and restitutions that depend on the speed (18.7).
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,29 @@
 #include <span>
 #include <vector>
 
+#include "impact_damper/math/elementary.hpp"
+#include "impact_damper/scene.hpp"
+
 namespace impact_damper {
+
+// Returns the restitution at an impact speed >= 0. pairs: SceneDamper::restitution_by_speed, not empty.
+template <class Real>
+Real restitution_at(const Pairs& pairs, const Real& speed) {
+  const auto next = std::ranges::find_if(pairs, [&](const auto& pair) { return speed < Real(pair[0]); });
+  if (next == pairs.begin()) return Real(pairs.front()[1]);
+  const auto& [from, e] = *(next - 1);
+  if (next == pairs.end()) return Real(e);
+  return e + (speed - from) * (Real((*next)[1]) - e) / (Real((*next)[0]) - from);
+}
+// Whether the restitution of all impacts up to this speed is e(0), within the tolerance of (M18.19).
+template <class Real>
+bool is_settled(const Pairs& pairs, const Real& speed, const Real& tolerance) {
+  const Real e = pairs.front()[1], most = tolerance * (1 - e);
+  const auto departs = [&](const auto& pair) {
+    return Real(pair[0]) < speed && !(absolute(Real(pair[1] - e)) <= most);
+  };
+  return absolute(Real(restitution_at(pairs, speed) - e)) <= most && std::ranges::none_of(pairs, departs);
+}
 
 // A secondary mass that is at a wall, impinging or at rest there. Velocities are divided by epsilon Omega_n.
 template <class Real>

@@ -47,7 +47,9 @@ Real zeta_m(const SceneDamper& damper, Calibration calibration) {
 // sqrt(1 + nu) and the damping ratio zeta_m sqrt(1 + nu).
 double omega_m(const SceneDamper& damper);
 
-// pi / omega_c: half a period of the contact, the nominal duration of one impact.
+// pi / omega_c: half a period of the contact, the nominal duration of one impact. With a law of its own the
+// wall counts as linear and as stiff as it is on average over the overlap that an impact at WallLaw::speed
+// reaches without losses.
 double nominal_contact_time(const SceneDamper& damper);
 
 }  // namespace impact_damper
