@@ -93,7 +93,7 @@ struct FigureCurve {
 };
 
 struct Figure {
-  std::string number;  // "1" ... "15", "A" ... "I"
+  std::string number;  // "1" ... "15", "A" ... "J"
   std::string title;
   TableKind table = TableKind::drawing;
   // One for motion, phase and largest_response; none for a drawing, response, response_map, design_charts.

@@ -53,7 +53,8 @@ std::int64_t members_shown(const Figure& figure, const std::string& scene);
 //   response     of the first, second ... force: "panel-1" (f0 / nu); "empty-1" and "locked-1" (frequency,
 //                amplitude), the linear oscillators; "rising-1", "falling-1" what is periodic of the sweeps
 //                and "rising-open-1", "falling-open-1" what is not; "stable-1", "unstable-1" the branches of
-//                orbits that are struck. A block of no rows is not there
+//                orbits that are struck; "plastic-1" the closed form, where e = 0 and zeta = 0. A block of no
+//                rows is not there
 //   largest_response  "prediction" (f0 / nu, amplitude) of the curve's decay, (M14.7), "beyond" its largest
 //                force, "band" the outline of the ensemble's; "rising", "falling" the largest amplitude of
 //                sweeps along the same forces
