@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/engines/recorded.hpp"
@@ -314,40 +315,52 @@ TEST_CASE("components: an engine without them names the one that has them") {
 
 TEST_CASE(
     "components: what friction, weight and drag change in a decay, with compliant and with rigid walls") {
-  // Numbers of an independent integrator with rigid walls and extended precision: A eta/nu by fits over a
-  // factor of 1.44 in amplitude, which chaos scatters by some 2 percent, and the amplitude at t = 1200 of a
-  // mass that is locked by then. Under a weight of 0.1 it has 0.261 at A = 1, where both engines have 0.27.
+  // Numbers of an independent integrator with rigid walls and extended precision, of one release each: A
+  // eta/nu by fits over a factor of 1.44 in amplitude, which chaos scatters by some 2 percent, and the
+  // amplitude at t = 1200 of a mass that is locked by then. Under a weight of 0.1 releases scatter by more at
+  // A = 1, where it has 0.261, both engines and the oracle (tests/oracle/oracle_itself.cpp) 0.27 on average,
+  // and at A = 0.2, where impacts of some fail already.
+  constexpr double unknown = -1;
   struct Row {
     double friction, weight, drag;
     std::vector<double> losses;
     double locked = 0;
   };
-  constexpr std::array<double, 4> amplitudes{2.5, 1.5, 1, 0.5};
-  for (const Row& row : {Row{0, 0, 0, {0.380, 0.332, 0.292, 0.264}},
-                         {0.01, 0, 0, {0.383, 0.338, 0.291, 0.278}},
-                         {0.05, 0, 0, {0.395, 0.356, 0.307, 0.305}, 0.0589},
-                         {0.2, 0, 0, {0.439, 0.411, 0.351, 0.375}, 0.221},
-                         {0.5, 0, 0, {0.491, 0.426, 0.401}, 0.539},
-                         {0, 0.1, 0, {0.376, 0.339}},
-                         {0, 0.5, 0, {0.363, 0.237, 0.317}, 0.588},
-                         {0, 0, 0.1, {0.400, 0.357, 0.315, 0.306}}}) {
+  constexpr std::array<double, 5> amplitudes{2.5, 1.5, 1, 0.5, 0.2};
+  for (const Row& row : {Row{0, 0, 0, {0.380, 0.332, 0.292, 0.264, 0.265}},
+                         {0.01, 0, 0, {0.383, 0.338, 0.291, 0.278, 0.281}},
+                         {0.05, 0, 0, {0.395, 0.356, 0.307, 0.305, 0.358}, 0.0589},
+                         {0.2, 0, 0, {0.439, 0.411, 0.351, 0.375, 0.006}, 0.221},
+                         {0.5, 0, 0, {0.491, 0.426, 0.401, 0.010}, 0.539},
+                         {0, 0.1, 0, {0.376, 0.339, unknown, 0.275}},
+                         {0, 0.5, 0, {0.363, 0.237, 0.317, 0.006}, 0.588},
+                         {0, 0, 0.1, {0.400, 0.357, 0.315, 0.306, 0.334}}}) {
     CAPTURE(row.friction);
     CAPTURE(row.weight);
     Scene scene{.x0 = 3, .weight = row.weight, .until_time = 1200};
     scene.damper().friction = row.friction;
     scene.damper().drag = row.drag;
-    for (const Engine& engine : {Engine(Cem{}), Engine(Restitution{})}) {
-      const bool rigid = has_rigid_walls(engine);
-      if (rigid && row.drag != 0) continue;
-      if (!rigid) scene.until_amplitude = 0.4;  // a locked mass takes many steps to the end
-      const HalfCycles rows = *simulate(scene, engine, {}).half_cycles;
-      scene.until_amplitude.reset();
+    // Half a unit of the last digit is what the table leaves open beside the scatter.
+    const auto check = [&](const std::vector<HalfCycles>& runs, double scatter, double down_to) {
       for (std::size_t n = 0; n < row.losses.size(); ++n) {
+        if (row.losses[n] == unknown || amplitudes[n] < down_to) continue;
         CAPTURE(amplitudes[n]);
-        CHECK(std::abs(specific_loss(rows, amplitudes[n]) - row.losses[n]) <= 0.03 * row.losses[n] + 0.002);
+        double mean = 0;
+        for (const HalfCycles& rows : runs) mean += specific_loss(rows, amplitudes[n]) / double(runs.size());
+        CHECK(std::abs(mean - row.losses[n]) <= scatter * row.losses[n] + 0.0005);
       }
-      if (rigid && row.locked > 0) CHECK(rows.amplitude.back() == doctest::Approx(row.locked).epsilon(0.01));
+    };
+    if (row.drag == 0) {
+      std::vector<HalfCycles> runs;
+      for (const Scene& each : ensemble_of(scene))
+        runs.push_back(*simulate(each, Restitution{}, {}).half_cycles);
+      check(runs, 0.02, 0);
+      if (row.locked > 0) CHECK(std::abs(runs.front().amplitude.back() - row.locked) <= 0.0005);
     }
+    // One release scatters by half as much again; a locked mass takes many steps to the end.
+    const double down_to = row.drag == 0 ? 0.5 : 0.2;
+    scene.until_amplitude = 0.75 * down_to;
+    check({*simulate(scene, Cem{}, {}).half_cycles}, 0.03, down_to);
   }
 }
 

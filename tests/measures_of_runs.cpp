@@ -483,6 +483,53 @@ TEST_CASE("measures of several dampers are what they are for decays of known los
   CHECK_THROWS_AS(measured("from_sum", all, {alone, alone}), std::invalid_argument);
 }
 
+TEST_CASE(
+    "friction and drag take what a run down to each of two amplitudes says, and lock as the closed form "
+    "says") {
+  const Scene scene{.x0 = 3, .until_time = 400, .dampers = {{.mass_ratio = 0.05, .friction = 0.3}}};
+  const Run run = simulate(scene, Restitution{}, Record{});
+  const auto lost = [&](double amplitude) {
+    Scene until = scene;
+    until.until_amplitude = amplitude;
+    return *simulate(until, Restitution{}, {.energy = true}).energy;
+  };
+  const auto share = [&](double to, double from) {
+    const EnergyBalance before = lost(to), after = lost(from);
+    return (after.friction_loss - before.friction_loss) / (before.final.total() - after.final.total());
+  };
+  const auto of = [&](const std::string& name, double from, double to) {
+    return measured(name, {{"from", from}, {"to", to}}, {run});
+  };
+  CHECK(share(2, 1) > 0.1);
+  CHECK(of("component_share", 1, 2) == doctest::Approx(share(2, 1)).epsilon(1e-12));
+  // Viscous damping is among what is lost; an amplitude that is not reached has no share.
+  Run damped = run;
+  damped.scene.damping_ratio = 0.02;
+  CHECK(measured("component_share", {{"from", 1}, {"to", 2}}, {damped}) < 0.6 * share(2, 1));
+  CHECK(std::isnan(of("component_share", 0.1, 2)));
+  // A fluid that resists that much takes all.
+  const Run wet = simulate({.x0 = 3, .until_time = 400, .dampers = {{.mass_ratio = 0.05, .drag = 5}}},
+                           Cem{.locate = true}, Record{});
+  CHECK(measured("component_share", {{"from", 2}, {"to", 2.6}}, {wet}) > 0.8);
+  // The share is as phi / A: a twentieth at some 45 phi, here in the bin below 0.45.
+  Run little = run;
+  little.scene.dampers = {{.mass_ratio = 0.02, .friction = 0.01}};
+  little.scene.until_time = 4000;
+  const double lowest = measured("component_share_insignificant", {{"from", 0.1}, {"to", 3}}, {little});
+  const double bin = std::pow(30, 1 / 18.0);
+  CHECK(measured("component_share", {{"from", lowest}, {"to", lowest * bin}}, {little}) < 0.05);
+  CHECK(measured("component_share", {{"from", lowest / bin}, {"to", lowest}}, {little}) >= 0.05);
+  CHECK(std::isnan(of("component_share_insignificant", 0.5, 2)));
+
+  CHECK(measured("locked_amplitude_ratio", {}, {run}) ==
+        doctest::Approx(run.half_cycles->amplitude.back() / (0.3 * 1.05)).epsilon(1e-12));
+  Run held = run;
+  held.scene.damper().static_friction = 0.4;
+  held.scene.weight = 0.2;
+  CHECK(measured("locked_amplitude_ratio", {}, {held}) ==
+        doctest::Approx(run.half_cycles->amplitude.back() / (0.6 * 1.05)).epsilon(1e-12));
+}
+
 // --- Measures that read responses --------------------------------------------------------------------------
 
 namespace {

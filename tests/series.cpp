@@ -126,19 +126,20 @@ const fs::path source = IMPACT_DAMPER_SOURCE;
 
 }  // namespace
 
-TEST_CASE("the project's catalogue has Figures 1 to 15, A to H, from eight distinct scenes") {
+TEST_CASE("the project's catalogue has Figures 1 to 15, A to J, from eight distinct scenes") {
   const Catalogue catalogue = read_catalogue(source / "figures/catalogue.json");
-  REQUIRE(catalogue.figures.size() == 23);
+  REQUIRE(catalogue.figures.size() == 25);
   for (int n = 1; n <= 15; ++n) CHECK(find_figure(catalogue, std::to_string(n)) != nullptr);
-  for (const char* letter : {"A", "B", "C", "D", "E", "F", "G", "H"})
+  for (const char* letter : {"A", "B", "C", "D", "E", "F", "G", "H", "I", "J"})
     CHECK(find_figure(catalogue, letter) != nullptr);
   for (const Figure& figure : catalogue.figures) CHECK(fs::exists(source / "figures" / figure.script));
 
   // Those that measures compare with.
   const Engine near_contact = Cem{.locate = true, .large_step = 0.02};
-  REQUIRE(catalogue.runs.size() == 17);
+  REQUIRE(catalogue.runs.size() == 31);
   for (const CatalogueRun& run : catalogue.runs)
-    CHECK(run.scene == (run.name.starts_with("dampers-") ? run.name : "nu2-e06"));
+    CHECK(run.scene ==
+          (run.name.starts_with("dampers-") ? run.name : run.name.substr(0, run.name.find('.'))));
   CHECK(find_run(catalogue.runs, "nu2-e06.restitution")->engine == Engine(Restitution{}));
   CHECK(find_run(catalogue.runs, "nu2-e06.restitution")->set.empty());
   CHECK(find_run(catalogue.runs, "nu2-e06.soft")->set.at("wall_stiffness") == 1e3);
@@ -1025,4 +1026,69 @@ TEST_CASE("several dampers are drawn by their mass, beside the sum of what each 
   rejected([](FigureRuns& all) { all["one"].run.scene.damper().restitution = 0.5; },
            "one.json: must have the restitution");
   rejected([](FigureRuns& all) { all["set"].run.half_cycles.reset(); }, "set.json: holds no half_cycles");
+}
+
+TEST_CASE("friction, weight and drag are drawn in a panel each, beside none, with the amplitudes that lock") {
+  // A = 6 exp(-eta t / 2), with one component or none.
+  const auto decay = [](double eta, double phi, double gamma, double d) {
+    Run run = exponential_decay(eta / 2, 400);
+    run.engine = Restitution{};
+    run.scene.dampers = {{.mass_ratio = 0.21, .friction = phi, .drag = d}};
+    run.scene.damping_ratio = 0;
+    run.scene.weight = gamma;
+    return run;
+  };
+  FigureRuns runs{{"none", {"none.json", decay(0.02, 0, 0, 0), {decay(0.06, 0, 0, 0)}}},
+                  {"held", {"held.json", decay(0.03, 0.8, 0, 0)}},
+                  {"little", {"little.json", decay(0.03, 0.1, 0, 0)}},
+                  {"heavy", {"heavy.json", decay(0.04, 0, 2, 0)}},
+                  {"wet", {"wet.json", decay(0.05, 0, 0, 0.3)}}};
+  runs["held"].run.scene.damper().static_friction = 1.5;
+  Figure figure = figure_of("I", TableKind::components, {"", "", "", "", ""});
+  figure.range = {0.5, 5};
+  const char* const names[] = {"none", "little", "held", "heavy", "wet"};
+  for (std::size_t i = 0; i < 5; ++i) figure.curves[i].run = names[i];
+  const Table table = figure_table(figure, runs);
+  REQUIRE(table.blocks.size() == 9);
+  const auto check_curve = [&](const std::string& name, double eta, const std::string& legend) {
+    CAPTURE(name);
+    const TableBlock& curve = block(table, name);
+    REQUIRE(curve.columns[0].values.size() == 12);
+    CHECK(curve.columns[1].heading == legend);
+    for (std::size_t i = 0; i < 12; ++i) {
+      const double amplitude = 5 * std::pow(10, -(double(i) + 0.5) / 12);
+      CHECK(curve.columns[0].values[i] == doctest::Approx(amplitude));
+      CHECK(curve.columns[1].values[i] == doctest::Approx(amplitude * eta / 0.21));
+    }
+  };
+  check_curve("curve-1-1", 0.03, "φ = 0");  // by the mean of the times
+  check_curve("curve-1-2", 0.03, "φ = 0.1");
+  check_curve("curve-1-3", 0.03, "φ = 0.8");
+  check_curve("curve-2-1", 0.03, "γ = 0");
+  check_curve("curve-2-2", 0.04, "γ = 2");
+  check_curve("curve-3-1", 0.03, "d = 0");
+  check_curve("curve-3-2", 0.05, "d = 0.3");
+  const TableBlock& none = block(table, "curve-1-1");
+  for (std::size_t i = 0; i < 12; ++i) {
+    CHECK(none.columns[2].values[i] == doctest::Approx(none.columns[0].values[i] * 0.02 / 0.21));
+    CHECK(none.columns[3].values[i] == doctest::Approx(none.columns[0].values[i] * 0.06 / 0.21));
+  }
+  // x'' of all together is A / (1 + nu), to be held by static friction; 0.1 lies below the range.
+  CHECK(block(table, "locking-1-3").columns[0].values[0] == doctest::Approx(1.5 * 1.21));
+  CHECK(block(table, "locking-2-2").columns[0].values[0] == doctest::Approx(2 * 1.21));
+
+  const auto rejected = [&](auto change, const std::string& why) {
+    FigureRuns changed = runs;
+    change(changed);
+    CHECK(contains(rejection(figure, changed), why));
+  };
+  rejected([](FigureRuns& all) { all["wet"].run.scene.weight = 1; },
+           "wet.json: must have one of friction, weight and drag");
+  rejected([](FigureRuns& all) { all["wet"].run.scene.dampers.push_back({}); },
+           "wet.json: must be of a single damper");
+  rejected([](FigureRuns& all) { all["heavy"].run.scene.damper().mass_ratio = 0.1; },
+           "heavy.json: must have the ratios of none.json");
+  rejected([](FigureRuns& all) { all["heavy"].run.scene.damping_ratio = 0.1; },
+           "heavy.json: must have the ratios of none.json");
+  rejected([](FigureRuns& all) { all["heavy"].run.half_cycles.reset(); }, "heavy.json: holds no half_cycles");
 }

@@ -142,6 +142,38 @@ TEST_CASE("a mass released by a wall at x = 0 meets the far wall as stated") {
   }
 }
 
+TEST_CASE("plastic impacts have the parts at the fundamental that a mass stepped between the walls has") {
+  for (const double a : {0.28, 0.31, 0.33, 0.5, 2.0, 6.0}) {
+    CAPTURE(a);
+    // Walls at x = a sin(t) and 1 + x; v is the mass's velocity. One that a wall catches moves with it.
+    double in_phase = 0, loss = 0, z = -a, v = 0;
+    const int steps = 40'000, cycles = 30;
+    const double h = 2 * pi / steps;
+    for (int i = 0; i < cycles * steps; ++i) {
+      const double t = h * (i + 1) - pi / 2, x = a * std::sin(t);
+      z += h * v;
+      if (z < x || z > 1 + x) {
+        z = z < x ? x : 1 + x;
+        v = a * std::cos(t);
+      }
+      if (i < (cycles - 1) * steps) continue;
+      in_phase -= v * std::cos(t) * h / (pi * a);
+      loss += v * std::sin(t) * h / (pi * a);
+    }
+    const PlasticImpacts impacts = plastic_impacts(a);
+    CHECK(std::abs(impacts.in_phase - in_phase) < 2e-3);
+    CHECK(std::abs(impacts.loss - loss) < 2e-3);
+    // Both frequencies satisfy the equation of the primary mass that they come from.
+    const double nu = 0.3, force = 0.4;
+    for (const double w : plastic_frequencies(nu, force, a))
+      CHECK(std::hypot(1 - w * w * (1 - nu * impacts.in_phase), nu * w * w * impacts.loss) ==
+            doctest::Approx(force / a));
+  }
+  CHECK(plastic_frequencies(0.3, 0.4, 0.5).size() == 2);
+  CHECK(plastic_frequencies(0.3, 0.4, 0.31).size() == 1);
+  CHECK(plastic_frequencies(0.3, 0.05, 0.5).empty());
+}
+
 TEST_CASE("bounce-down follows the bounces that a small-step integration finds") {
   const double e = 0.6, a = 7.5;
   const BounceDown bounces = bounce_down(e, a);

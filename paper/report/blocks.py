@@ -24,7 +24,7 @@ sys.path.append(str(Path(__file__).resolve().parents[2] / "src/wasm/page"))
 from pages import own_html  # noqa: E402
 
 # Mathematics in the words of claims, which are plain ASCII: what is set, and as which formula.
-GREEK = {"eta": r"\eta", "nu": r"\nu", "zeta": r"\zeta", "pi": r"\pi"}
+GREEK = {"eta": r"\eta", "nu": r"\nu", "zeta": r"\zeta", "phi": r"\varphi", "pi": r"\pi"}
 FORMULAS = [(re.compile(pattern), formula) for pattern, formula in (
     (r"L/sqrt\(pi\^2 \+ L\^2\) with L = -ln e", r"$L/\\sqrt{\\pi^2 + L^2}$ with $L = -\\ln e$"),
     (r"Omega_m = sqrt\(K_M/M\)", r"$\\Omega_m = \\sqrt{K_M/M}$"),
@@ -41,10 +41,10 @@ FORMULAS = [(re.compile(pattern), formula) for pattern, formula in (
     (r"A eta_s/nu", r"$A\\eta_s/\\nu$"),
     (r"A eta/nu", r"$A\\eta/\\nu$"),
     (r"\b2 (pi|zeta)\b", lambda m: f"$2{GREEK[m[1]]}$"),
-    (r"\b(nu|zeta|eta|e|k|A|x0) = ([\d.]+(?:e[+-]?\d+)?)",
+    (r"\b(nu|zeta|eta|phi|d|e|k|A|x0) = ([\d.]+(?:e[+-]?\d+)?)",
      lambda m: f"${GREEK.get(m[1], m[1].replace('x0', 'x_0'))} = {scientific(m[2])}$"),
     (r"\b1 - e\b", r"$1 - e$"),
-    (r"\b(nu|zeta|eta|pi)\b", lambda m: f"${GREEK[m[1]]}$"),
+    (r"\b(nu|zeta|eta|phi|pi)\b", lambda m: f"${GREEK[m[1]]}$"),
     (r"\b[\d.]+e[+-]?\d+\b", lambda m: f"${scientific(m[0])}$"))]
 
 

@@ -135,6 +135,7 @@ def design_charts():
 ENDS = {("band", 2): "low", ("band", 3): "high", ("spread", 2): "low", ("spread", 3): "high"}
 ENDS_OF = {"largest_response": {}, "phase": ENDS | {("stuck", 2): "low", ("stuck", 3): "high"},
            "design_charts": ENDS | {("curve", 3): "low", ("curve", 4): "high"},
+           "components": ENDS | {("curve", 3): "low", ("curve", 4): "high"},
            "damper_sets": ENDS | {("set", 3): "low", ("set", 4): "high"}}
 
 

@@ -47,7 +47,7 @@ struct Drawn {
   std::size_t parts = 0;
   bool history = false;
 };
-constexpr std::array<Drawn, 10> all_drawn{{{TableKind::motion, Drawn::one, 3, true},
+constexpr std::array<Drawn, 11> all_drawn{{{TableKind::motion, Drawn::one, 3, true},
                                            {TableKind::decay, Drawn::some, 1},
                                            {TableKind::loss_factor, Drawn::some, 1},
                                            {TableKind::phase, Drawn::one, 3},
@@ -56,9 +56,12 @@ constexpr std::array<Drawn, 10> all_drawn{{{TableKind::motion, Drawn::one, 3, tr
                                            {TableKind::response_map},
                                            {TableKind::design_charts},
                                            {TableKind::damper_sets, Drawn::some, 1},
+                                           {TableKind::components, Drawn::some, 1},
                                            {TableKind::drawing}}};
 static_assert(all_drawn.size() == all_of<TableKind>.size());
 const Drawn& drawn_by(TableKind table) { return *std::ranges::find(all_drawn, table, &Drawn::table); }
+// Whether the curves of such a table are runs of the catalogue, with their ensembles, between two amplitudes.
+bool draws_runs(TableKind table) { return table == TableKind::damper_sets || table == TableKind::components; }
 
 Record read_record(ObjectReader& scene) {
   Record record;
@@ -99,9 +102,9 @@ std::vector<FigureCurve> read_curves(ObjectReader& figure, TableKind table) {
   std::vector<FigureCurve> curves;
   for (ObjectReader item : figure.optional_objects("curves", 100)) {
     FigureCurve curve;
-    if (table == TableKind::damper_sets) {
+    if (draws_runs(table)) {
       item.required("run", curve.run, a_name);
-      item.required("alone", curve.alone, a_name);
+      if (table == TableKind::damper_sets) item.required("alone", curve.alone, a_name);
     } else {
       item.required("scene", curve.scene, a_name);
     }
@@ -166,28 +169,28 @@ void check_curves(ObjectReader& item, const Figure& figure, const Catalogue& cat
                                                  : "at least one curve") +
                               " with \"table\": " + in_quotes(name_of(figure.table)) + ", got " +
                               std::to_string(count));
-  const bool sets = figure.table == TableKind::damper_sets;
-  if (!sets && (count > 1) != item.has("varied")) {
+  const bool runs = draws_runs(figure.table);
+  if (!runs && (count > 1) != item.has("varied")) {
     item.reject("varied", "must be given if, and only if, there are several curves, got " +
                               std::string(count > 1 ? "none" : "it") + " for " + std::to_string(count));
   }
   for (std::size_t i = 0; i < count; ++i) {
     const FigureCurve& curve = figure.curves[i];
-    for (const std::string& name : {sets ? curve.run : curve.scene, curve.alone}) {
+    for (const std::string& name : {runs ? curve.run : curve.scene, curve.alone}) {
       if (name.empty()) continue;
       const CatalogueScene* const scene = find_scene(catalogue, name);
       const CatalogueRun* const run = find_run(catalogue.runs, name);
-      if (sets ? !run : !scene) {
+      if (runs ? !run : !scene) {
         item.reject("curves", i,
-                    "must draw " + std::string(sets ? "runs" : "a scene") +
+                    "must draw " + std::string(runs ? "runs" : "a scene") +
                         " of this catalogue, got the string " + in_quotes(name));
         continue;
       }
-      const Record& record = sets ? run->record : scene->record;
+      const Record& record = runs ? run->record : scene->record;
       if (const std::string missing = missing_record(figure.table, record); !missing.empty())
         item.reject("curves", i,
                     "needs \"" + missing +
-                        (sets ? "\" in the record of run " + name
+                        (runs ? "\" in the record of run " + name
                               : "\" in the scene's record, which " + name + " lacks"));
       const auto opens_window = [&](const AmplitudeWindow& window) {
         return window.amplitude == figure.window;
@@ -365,7 +368,7 @@ Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
     item.keys();  // which others are known depends on the table
     return figure;
   }
-  if (figure.table != TableKind::damper_sets && item.has("varied")) {
+  if (!draws_runs(figure.table) && item.has("varied")) {
     figure.varied = Varied::mass_ratio;
     item.required("varied", *figure.varied);
   }
@@ -379,9 +382,9 @@ Figure read_figure(ObjectReader& item, const Catalogue& catalogue) {
       item.required("second_ordinate", figure.second_ordinate.emplace(LossOrdinate::eta));
     if (item.has("range")) read_amplitudes(item, figure.range);
   }
-  if (figure.table == TableKind::damper_sets) read_amplitudes(item, figure.range);
+  if (draws_runs(figure.table)) read_amplitudes(item, figure.range);
   if (figure.table == TableKind::motion) item.required("window", figure.window.emplace(), amplitudes);
-  if (figure.table != TableKind::motion && figure.table != TableKind::damper_sets &&
+  if (figure.table != TableKind::motion && !draws_runs(figure.table) &&
       drawn_by(figure.table).curves != Drawn::none)
     item.required("down_to", figure.down_to.emplace(), amplitudes);
   check_curves(item, figure, catalogue);

@@ -45,6 +45,7 @@ enum class TableKind {
   response_map,      // which steady motion there is, over frequency and amplitude of a force
   design_charts,     // loss factor over amplitude for many restitutions and mass ratios, of a sweep
   damper_sets,       // loss factor of several dampers over amplitude, and the sum of theirs
+  components,        // the same of one damper with friction, weight or drag
   drawing,           // none: a schematic without runs
 };
 
@@ -82,8 +83,9 @@ struct CatalogueResponse {
 Response asked_for(const CatalogueResponse& response, const Scene& scene);
 
 struct FigureCurve {
-  std::string scene;  // empty in damper_sets tables
-  // damper_sets tables only: a run of several dampers and one of a single damper, of the catalogue's runs.
+  std::string scene;  // empty where runs are drawn
+  // damper_sets tables: a run of several dampers and one of a single damper, of the catalogue's runs;
+  // components tables: a run, `alone` is empty.
   std::string run, alone;
   // loss_factor and largest_response tables only:
   LossFactorOptions loss_factor;  // its window of averaging
@@ -91,7 +93,7 @@ struct FigureCurve {
 };
 
 struct Figure {
-  std::string number;  // "1" ... "15", "A" ... "H"
+  std::string number;  // "1" ... "15", "A" ... "J"
   std::string title;
   TableKind table = TableKind::drawing;
   // One for motion, phase and largest_response; none for a drawing, response, response_map, design_charts.
@@ -103,8 +105,8 @@ struct Figure {
   std::optional<Varied> varied;                 // if there is more than one curve
   std::optional<double> window;   // motion tables: the amplitude of one of the scene's history windows
   std::optional<double> down_to;  // amplitude that every curve must reach; otherwise its run is too short
-  // Two amplitudes: the range of the spread in a loss_factor table, empty for none, or of a damper_sets
-  // table.
+  // Two amplitudes: the range of the spread in a loss_factor table, empty for none, or of a damper_sets or
+  // components table.
   std::vector<double> range;
   std::string script;               // beside the catalogue; unique even without its ending
   std::vector<std::string> claims;  // ids in data/claims.json

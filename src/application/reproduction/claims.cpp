@@ -320,6 +320,7 @@ const std::vector<PrintedKind>& printed_kinds() {
        {0, 3},
        "The same but for chaos, which moves curves by up to 1 percent: three times that."},
       {"small", 0, {-0.1, 0.1}, "Small or close beside another: at most a tenth of it."},
+      {"insignificant", 0, {0, 0.05}, "Insignificant beside the rest: a share of a twentieth at most."},
       {"large_number", 0, {10, none}, "A large number: ten at least."},
       {"wide", 0, {3, none}, "A wide range: a factor of three at least, half a decade."},
       {"equal_angles", 0, {0, 5}, "Equal in a figure: 5 degrees at most."},

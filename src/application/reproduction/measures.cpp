@@ -193,8 +193,8 @@ double Asked::number(const std::string& name) const {
 const std::vector<Measure>& measures() {
   static const std::vector<Measure> table = [] {
     std::vector<Measure> all;
-    for (auto part :
-         {loss_measures(), regime_measures(), model_measures(), steady_measures(), damper_measures()})
+    for (auto part : {loss_measures(), regime_measures(), model_measures(), steady_measures(),
+                      damper_measures(), component_measures()})
       all.insert(all.end(), part.begin(), part.end());
     std::ranges::sort(all, {}, &Measure::name);
     return all;

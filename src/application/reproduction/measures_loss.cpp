@@ -1,8 +1,10 @@
-// Measures on the curves of the averaged loss factor, and on the losses of several dampers.
+// Measures on the curves of the averaged loss factor, on the losses of several dampers, and on what friction
+// and drag take of the energy.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -150,7 +152,64 @@ double loss_ratio(const Asked& asked) {
   return greatest / least;
 }
 
+// The energy that a run has lost, and what friction and drag took of it, when its amplitude first is at most
+// `amplitude`; NaN where it does not come down to it.
+struct LostEnergy {
+  double all = std::nan(""), by_components = std::nan("");
+};
+LostEnergy lost_down_to(const Asked& asked, const Run& run, double amplitude) {
+  Scene scene = run.scene;
+  scene.until_amplitude = amplitude;
+  const Run shorter = asked.runs.simulated(scene, run.engine, {.half_cycles = false, .energy = true});
+  if (shorter.stop_reason != StopReason::amplitude) return {};
+  const EnergyBalance& balance = *shorter.energy;
+  return {balance.initial.total() + balance.forcing_work - balance.final.total(),
+          balance.friction_loss + balance.drag_loss};
+}
+double share_between(const LostEnergy& before, const LostEnergy& after) {
+  return (after.by_components - before.by_components) / (after.all - before.all);
+}
+
+// What counts as insignificant beside the rest.
+constexpr double insignificant = 0.05;
+
 }  // namespace
+
+std::vector<Measure> component_measures() {
+  return {
+      {"component_share",
+       "share that friction and drag take of the energy that is lost between two amplitudes",
+       [](const Asked& asked, const Run& run) {
+         return share_between(lost_down_to(asked, run, asked.number("to")),
+                              lost_down_to(asked, run, asked.number("from")));
+       },
+       numbers("from", "to")},
+      {"component_share_insignificant",
+       "lowest amplitude down to which friction and drag take less than a twentieth of the energy that is "
+       "lost in each twelfth of a decade between two amplitudes",
+       [](const Asked& asked, const Run& run) {
+         double lowest = std::nan("");
+         std::optional<LostEnergy> before;
+         for (const double edge : edges_of(asked)) {
+           const LostEnergy after = lost_down_to(asked, run, edge);
+           if (before && !(share_between(*before, after) < insignificant)) break;
+           if (before) lowest = edge;
+           before = after;
+         }
+         return lowest;
+       },
+       numbers("from", "to")},
+      {"locked_amplitude_ratio",
+       "amplitude of the last half cycle divided by that below which friction or weight holds the mass "
+       "(M18.4)",
+       [](const Asked&, const Run& run) {
+         const SceneDamper& damper = run.scene.damper();
+         return half_cycles_of(run).amplitude.back() /
+                locking_amplitude(1 / square_root(1 + damper.mass_ratio),
+                                  damper.holding() + run.scene.weight);
+       }},
+  };
+}
 
 std::vector<Measure> loss_measures() {
   return {

@@ -108,10 +108,11 @@ inline const Impacts& impacts_of(const Run& run) {
 }
 
 // The parts of the table, by subject.
-std::vector<Measure> loss_measures();    // loss factor curves
-std::vector<Measure> damper_measures();  // several dampers
-std::vector<Measure> regime_measures();  // bounce-down, regular impacts, impact failure, phases of impacts
-std::vector<Measure> model_measures();   // engines and settings compared, errors of the paper's formulas
-std::vector<Measure> steady_measures();  // steady motions under a force
+std::vector<Measure> loss_measures();       // loss factor curves
+std::vector<Measure> damper_measures();     // several dampers
+std::vector<Measure> component_measures();  // friction, weight and drag
+std::vector<Measure> regime_measures();     // bounce-down, regular impacts, impact failure, phases of impacts
+std::vector<Measure> model_measures();      // engines and settings compared, errors of the paper's formulas
+std::vector<Measure> steady_measures();     // steady motions under a force
 
 }  // namespace impact_damper

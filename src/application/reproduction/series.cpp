@@ -209,6 +209,7 @@ Table table_of(const Figure& figure, const std::vector<const FigureRun*>& source
       break;
     case TableKind::design_charts:
     case TableKind::damper_sets:
+    case TableKind::components:
     case TableKind::drawing:
       break;
   }
@@ -277,6 +278,9 @@ Table figure_table(const Figure& figure, const FigureRuns& runs, const FigureRes
   } else if (figure.table == TableKind::damper_sets) {
     first_file = runs.at(figure.curves.front().run).file;
     table = damper_sets_table(figure, runs);
+  } else if (figure.table == TableKind::components) {
+    first_file = runs.at(figure.curves.front().run).file;
+    table = components_table(figure, runs);
   } else {
     std::vector<const FigureRun*> sources;
     for (const FigureCurve& curve : figure.curves) sources.push_back(&runs.at(curve.scene));

@@ -53,7 +53,8 @@ std::int64_t members_shown(const Figure& figure, const std::string& scene);
 //   response     of the first, second ... force: "panel-1" (f0 / nu); "empty-1" and "locked-1" (frequency,
 //                amplitude), the linear oscillators; "rising-1", "falling-1" what is periodic of the sweeps
 //                and "rising-open-1", "falling-open-1" what is not; "stable-1", "unstable-1" the branches of
-//                orbits that are struck. A block of no rows is not there
+//                orbits that are struck; "plastic-1" the closed form, where e = 0 and zeta = 0. A block of no
+//                rows is not there
 //   largest_response  "prediction" (f0 / nu, amplitude) of the curve's decay, (M14.7), "beyond" its largest
 //                force, "band" the outline of the ensemble's; "rising", "falling" the largest amplitude of
 //                sweeps along the same forces
@@ -65,6 +66,9 @@ std::int64_t members_shown(const Figure& figure, const std::string& scene);
 //   damper_sets  of the first, second ... curve: "set-1" (amplitude, mean loss factor of the run's ensemble
 //                divided by the mass of all dampers, least, greatest) in bins of a twelfth of a decade;
 //                "sum-1" the same if its dampers add, of the run alone; "dampers-1" (clearance, mass)
+//   components   of friction, weight and drag: "curve-1-1", "curve-1-2" ... of the runs that have it, and of
+//                the one that has none of them (amplitude, A eta / nu of the run's ensemble, least, greatest)
+//                in the same bins; "locking-1-1" ..., the closed form's amplitude, where it is in the range
 //
 // Throws InputError naming figure and file if a run lacks what is drawn: a column, a window of the
 // history, enough half cycles, the amplitude Figure::down_to, a member; or if a drawn value is not finite.
@@ -119,5 +123,6 @@ void add_map_blocks(const Figure& figure, const FigureResponse& source, Table& t
 // Return the whole table.
 Table design_table(const Figure& figure, const SweepTable& sweep);
 Table damper_sets_table(const Figure& figure, const FigureRuns& runs);
+Table components_table(const Figure& figure, const FigureRuns& runs);
 
 }  // namespace impact_damper

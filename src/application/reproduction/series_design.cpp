@@ -1,7 +1,8 @@
 // Tables of what a damper is chosen by: the design charts, from a sweep over restitution and mass ratio that
-// keeps the loss factor at many amplitudes, of several releases each; and several dampers, their loss
-// together beside the sum of the losses of each alone.
+// keeps the loss factor at many amplitudes, of several releases each; several dampers, their loss together
+// beside the sum of the losses of each alone; and one with friction, weight or drag.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/scene_file.hpp"
+#include "impact_damper/math/elementary.hpp"
 
 namespace impact_damper {
 namespace {
@@ -41,6 +43,50 @@ std::vector<Run> releases_of(const FigureRun& source) {
   std::vector<Run> runs{source.run};
   runs.insert(runs.end(), source.others.begin(), source.others.end());
   return runs;
+}
+
+const char* const of_middle = "peak amplitude, divided by epsilon; the middle of a twelfth of a decade";
+
+// Edges of the bins of Figure::range, descending, and the middles between them.
+struct Bins {
+  std::vector<double> edges, middles;
+
+  explicit Bins(const Figure& figure)
+      : edges(descending_amplitudes(figure.range[1], figure.range[0], set_bins_in_decade)) {
+    for (std::size_t k = 0; k + 1 < edges.size(); ++k) middles.push_back(std::sqrt(edges[k] * edges[k + 1]));
+  }
+};
+
+// Adds a line for each run that the figure draws, and its engine, to the header.
+void add_runs(const Figure& figure, const FigureRuns& runs, Table& table) {
+  for (const std::string& name : runs_of(figure)) {
+    const FigureRun& source = runs.at(name);
+    table.header.push_back("Run " + name + ", " + std::to_string(source.others.size() + 1) +
+                           " releases: " + scene_text(source.run.scene));
+    table.header.push_back("  engine: " + options_text(source.run.engine));
+  }
+}
+
+// The components of a scene, one to a panel.
+struct Component {
+  const char* symbol;
+  double (*of)(const Scene&);
+};
+constexpr std::array components{Component{"φ", [](const Scene& scene) { return scene.damper().friction; }},
+                                Component{"γ", [](const Scene& scene) { return scene.weight; }},
+                                Component{"d", [](const Scene& scene) { return scene.damper().drag; }}};
+
+// Throws unusable() unless the run is of a single damper with one component at most and, this aside, has the
+// ratios of the first.
+void check_component(const Figure& figure, const FigureRun& source, const FigureRun& first) {
+  const Scene &scene = source.run.scene, &wanted = first.run.scene;
+  if (!has_one_damper(scene)) throw unusable(figure, source.file, "must be of a single damper");
+  if (std::ranges::count_if(components, [&](const Component& each) { return each.of(scene) != 0; }) > 1)
+    throw unusable(figure, source.file, "must have one of friction, weight and drag");
+  if (scene.damper().mass_ratio != wanted.damper().mass_ratio ||
+      scene.damper().restitution != wanted.damper().restitution ||
+      scene.damping_ratio != wanted.damping_ratio)
+    throw unusable(figure, source.file, "must have the ratios of " + first.file.string());
 }
 
 void check_sources(const Figure& figure, const FigureRun& set, const FigureRun& alone) {
@@ -123,16 +169,9 @@ Table damper_sets_table(const Figure& figure, const FigureRuns& runs) {
   Table table{header_of(figure, "e = " + number_text(first.dampers.front().restitution) +
                                     ", ζ = " + number_text(first.damping_ratio) + "; restitution model"),
               {}};
-  for (const std::string& name : runs_of(figure)) {
-    const FigureRun& source = runs.at(name);
-    table.header.push_back("Run " + name + ", " + std::to_string(source.others.size() + 1) +
-                           " releases: " + scene_text(source.run.scene));
-    table.header.push_back("  engine: " + options_text(source.run.engine));
-  }
-  const std::vector<double> edges =
-      descending_amplitudes(figure.range[1], figure.range[0], set_bins_in_decade);
-  std::vector<double> middles;
-  for (std::size_t k = 0; k + 1 < edges.size(); ++k) middles.push_back(std::sqrt(edges[k] * edges[k + 1]));
+  add_runs(figure, runs, table);
+  const Bins bins(figure);
+  const std::vector<double>&edges = bins.edges, &middles = bins.middles;
   for (std::size_t i = 0; i < figure.curves.size(); ++i) {
     const FigureRun &set = runs.at(figure.curves[i].run), &one = runs.at(figure.curves[i].alone);
     for (const FigureRun* source : {&set, &one}) half_cycles_of(figure, *source);
@@ -144,7 +183,6 @@ Table damper_sets_table(const Figure& figure, const FigureRuns& runs) {
     for (std::vector<double>* values : {&losses.mean, &losses.low, &losses.high, &sum})
       for (double& value : *values) value /= mass;
     const std::string number = std::to_string(i + 1), count = std::to_string(dampers.size());
-    const char* const of_middle = "peak amplitude, divided by epsilon; the middle of a twelfth of a decade";
     table.add({.name = "set-" + number,
                .notes = {"run " + figure.curves[i].run},
                .columns = {{"amplitude", of_middle, middles},
@@ -160,6 +198,52 @@ Table damper_sets_table(const Figure& figure, const FigureRuns& runs) {
                     .columns = {{"clearance", "divided by epsilon"}, {"mass", "nu_i / (sum of nu)"}}};
     for (const SceneDamper& damper : dampers) list.add_row({damper.clearance, damper.mass_ratio / mass});
     table.add(std::move(list));
+  }
+  return table;
+}
+
+Table components_table(const Figure& figure, const FigureRuns& runs) {
+  const FigureRun& first = runs.at(figure.curves.front().run);
+  for (const FigureCurve& curve : figure.curves) check_component(figure, runs.at(curve.run), first);
+  const SceneDamper& damper = first.run.scene.damper();
+  Table table{header_of(figure, "ν = " + rounded_text(100 * damper.mass_ratio, 3) +
+                                    " %, e = " + number_text(damper.restitution) +
+                                    ", ζ = " + number_text(first.run.scene.damping_ratio)),
+              {}};
+  add_runs(figure, runs, table);
+  const Bins bins(figure);
+  for (std::size_t p = 0; p < components.size(); ++p) {
+    const Component& component = components[p];
+    const auto is_drawn = [&](const FigureCurve& curve) {
+      const Scene& scene = runs.at(curve.run).run.scene;
+      return component.of(scene) != 0 || !has_components(scene);
+    };
+    std::size_t count = 0;
+    for (const FigureCurve& curve : figure.curves) {
+      if (!is_drawn(curve)) continue;
+      const FigureRun& source = runs.at(curve.run);
+      half_cycles_of(figure, source);
+      const Scene& scene = source.run.scene;
+      const double nu = scene.damper().mass_ratio;
+      LossSpread losses = losses_between(releases_of(source), bins.edges);
+      for (std::vector<double>* values : {&losses.mean, &losses.low, &losses.high})
+        for (std::size_t k = 0; k < values->size(); ++k) (*values)[k] *= bins.middles[k] / nu;
+      const std::string number = std::to_string(p + 1) + "-" + std::to_string(++count);
+      const std::string legend = std::string(component.symbol) + " = " + number_text(component.of(scene));
+      table.add({.name = "curve-" + number,
+                 .notes = {"run " + curve.run},
+                 .columns = {{"amplitude", of_middle, bins.middles},
+                             {legend, "A eta / nu by the mean of the releases' times", losses.mean},
+                             {"least", "of the releases", losses.low, Ordinate::low},
+                             {"greatest", "of the releases", losses.high, Ordinate::high}}});
+      const double most = scene.damper().holding() + scene.weight;
+      const double locking = locking_amplitude(1 / square_root(1 + nu), most);
+      if (locking > figure.range[0] && locking < figure.range[1])
+        table.add({.name = "locking-" + number,
+                   .notes = {"closed form (M18.4): friction, or its weight on the floor, holds the mass"},
+                   .columns = {{"amplitude", "peak amplitude, divided by epsilon", {locking}},
+                               {legend, "of the component", {component.of(scene)}}}});
+    }
   }
   return table;
 }

@@ -6,6 +6,7 @@
 #include "application/reproduction/measures_parts.hpp"
 #include "application/reproduction/series.hpp"
 #include "impact_damper/analysis/design.hpp"
+#include "impact_damper/analysis/theory.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/math/elementary.hpp"
 
@@ -49,6 +50,39 @@ void add_linear_block(Table& table, const std::string& name, const std::string& 
     }
   }
   add_block(table, name, of_frequency, legend, of_amplitude, points);
+}
+
+// Adds the closed form of plastic impacts for amplitudes up to `most`: where there are two frequencies for an
+// amplitude, up the lower one and down the upper one, which meet where they begin or cease to be there.
+void add_plastic_block(Table& table, const std::string& name, const Scene& scene, const Axis& axis,
+                       double most) {
+  constexpr int last = 400;
+  const double least = fold_amplitude(0);
+  std::array<double, last + 1> amplitudes{};
+  std::array<std::vector<double>, last + 1> frequencies;
+  for (int k = 0; k <= last; ++k) {
+    amplitudes[k] = least * exponential(logarithm(most / least) * k / last);
+    frequencies[k] = plastic_frequencies(scene.damper().mass_ratio, scene.force_amplitude, amplitudes[k]);
+  }
+  Points points;
+  const auto add = [&](int k, bool upper) {
+    if (!upper && frequencies[k].size() < 2) return;
+    const double frequency = upper ? frequencies[k].back() : frequencies[k].front();
+    if (frequency >= axis.from && frequency <= axis.to) points.add(frequency, amplitudes[k]);
+  };
+  for (int first = 0; first <= last; ++first) {
+    if (frequencies[first].empty()) continue;
+    int end = first;
+    while (end <= last && !frequencies[end].empty()) ++end;
+    points.interrupt();
+    for (int k = first; k < end; ++k) add(k, false);
+    if (end > last) points.interrupt();
+    for (int k = end; k-- > first;) add(k, true);
+    if (first > 0) add(first, false);
+    first = end;
+  }
+  add_block(table, name, of_frequency, "two impacts, closed form", of_amplitude, points,
+            {"for nu -> 0, zeta = 0"});
 }
 
 // The steady motions under one force that are drawn, from sweeps and from branches.
@@ -142,6 +176,9 @@ void add_response_blocks(const Figure& figure, const std::vector<const FigureRes
     add_linear_block(table, "empty-" + panel, "without the secondary mass", scene, sweep.axis, 1);
     add_linear_block(table, "locked-" + panel, "secondary mass locked", scene, sweep.axis,
                      1 + scene.damper().mass_ratio);
+    constexpr double largest_drawn = 5;
+    if (scene.damper().restitution == 0 && scene.damping_ratio == 0)
+      add_plastic_block(table, "plastic-" + panel, scene, sweep.axis, largest_drawn);
   }
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const Panel& panel = panels[i];

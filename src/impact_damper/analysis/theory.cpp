@@ -119,6 +119,32 @@ StuckRelease stuck_release(double amplitude) {
   return release;
 }
 
+PlasticImpacts plastic_impacts(double amplitude) {
+  if (amplitude < 1 / pi) {
+    // The impulses 2 V on the mass at the phases theta - pi/2 and theta + pi/2.
+    const auto motion = single_impact(0, amplitude);
+    if (!motion) return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+    return {-4 * motion->speed * sin_cos(motion->theta).cos / (pi * amplitude), motion->loss};
+  }
+  // The impulse A (1 - cos t*) at t*, then x'' until x = 0.
+  const StuckRelease release = stuck_release(amplitude);
+  const auto [sin, cos] = sin_cos(release.time);
+  return {-(2 * (1 - cos) * sin + pi - release.time + sin * cos) / pi, release.loss};
+}
+
+std::vector<double> plastic_frequencies(double mass_ratio, double force_amplitude, double amplitude) {
+  const PlasticImpacts impacts = plastic_impacts(amplitude);
+  const double a = 1 - mass_ratio * impacts.in_phase, b = mass_ratio * impacts.loss,
+               f = force_amplitude / amplitude, squares = square(a) + square(b),
+               discriminant = square(a) - squares * (1 - square(f));
+  if (!(discriminant >= 0)) return {};
+  std::vector<double> frequencies;
+  for (const double sign : {-1, 1})
+    if (const double of_square = a + sign * std::sqrt(discriminant); of_square > 0)
+      frequencies.push_back(std::sqrt(of_square / squares));
+  return frequencies;
+}
+
 BounceDown bounce_down(double restitution, double amplitude) {
   constexpr double short_rest = 1e-6;  // of the time left: the acceleration changes by as little in the rest
   const double e = restitution, a = amplitude;

@@ -59,6 +59,18 @@ struct StuckRelease {
 // A >= 1/pi (the far wall is met before x returns to 0).
 StuckRelease stuck_release(double amplitude);
 
+// Plastic impacts, e = 0, x = A sin(tau), one on each wall in a cycle: up to A = 1/pi the mass flies on at
+// once (single_impact), above it sticks to its wall until x = 0 (stuck_release). z'' has at the fundamental
+// frequency the part A (in_phase sin(tau) + loss cos(tau)), with x'' being -A sin(tau); in_phase is -1 for a
+// mass that is locked, loss is eta/nu. A force of frequency w then holds (M14.11)
+//   (f0/A)^2 = (1 - w^2 (1 - nu in_phase))^2 + (nu w^2 loss)^2.
+struct PlasticImpacts {
+  double in_phase = 0, loss = 0;
+};
+PlasticImpacts plastic_impacts(double amplitude);  // >= fold_amplitude(0)
+// The frequencies w of it, the lower first: none, two or, where f0 > A, the upper one alone.
+std::vector<double> plastic_frequencies(double mass_ratio, double force_amplitude, double amplitude);
+
 // The same with the bounces that follow: under the falling relative acceleration A sin(t) each flight of
 // the mass from the far wall is a bounce at a known speed, and each bounce loses nu (1 - e^2) w^2 / 2.
 struct BounceDown {

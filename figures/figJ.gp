@@ -1,0 +1,1 @@
+load folder."/response.gp"
