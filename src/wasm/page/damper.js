@@ -23,7 +23,7 @@ const parameters = [
   { name: "drag", symbol: "d", words: "drag", from: 0, to: 2, component: true },
 ];
 // What an engine cannot have; the component element method can have all.
-const lacking = { exact: ["friction", "weight", "drag"], restitution: ["drag"] };
+const lacking = { exact: [], restitution: ["drag"] };
 const engineFor = (name, scene) => (lacking[name].some((each) => each in scene) ? "cem" : name);
 
 const presets = [

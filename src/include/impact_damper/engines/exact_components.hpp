@@ -1,4 +1,4 @@
-// The exact engine for scenes with friction, static friction, weight or drag (docs/mathematics.md, 18.6):
+// The exact engine for scenes with friction, static friction, weight or drag (docs/mathematics.md, 18.8):
 // compliant walls, one or several dampers.
 //
 // Each secondary mass flies, pushes a wall, or is held by friction where it is, in flight or in its wall.
@@ -429,7 +429,7 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
 
   // Decides who is held: of the masses at rest those that can be. Which these are does not depend on the
   // order in which it is found: always the first one that contradicts its state changes it, which ends
-  // (18.6). Then a mass at rest on its wall enters it or leaves it.
+  // (18.8). Then a mass at rest on its wall enters it or leaves it.
   void settle() {
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       Mass& mass = each_[i];

@@ -3,7 +3,7 @@
 // Modes are not used: a set of masses seldom comes again, and equal dampers have equal modes.
 //
 // With components (chapter 18) the same series hold for masses that slide with friction in a wall, or in a
-// fluid, where K = 0: what is constant in a piece enters at the order 0 (M18.13).
+// fluid, where K = 0: what is constant in a piece enters at the order 0 (M18.20).
 #pragma once
 
 #include <algorithm>

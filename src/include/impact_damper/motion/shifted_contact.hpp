@@ -1,4 +1,4 @@
-// Contact with a compliant wall under friction and weight (docs/mathematics.md, 18.6): what is constant in it
+// Contact with a compliant wall under friction and weight (docs/mathematics.md, M18.21): what is constant in it
 // only shifts the place of rest, about which x and q move as in contact.hpp.
 #pragma once
 
