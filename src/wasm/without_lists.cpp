@@ -22,6 +22,8 @@ namespace {
 template <Scalar Real, DampersObserver Observer>
 Outcome run_exact_dampers(const Checked& run, Observer& observer);
 template <Scalar Real, DampersObserver Observer>
+Outcome run_exact_with_components(const Checked& run, Observer& observer);
+template <Scalar Real, DampersObserver Observer>
 Outcome run_restitution_dampers(const Checked& run, Observer& observer);
 template <Scalar Real, DampersObserver Observer>
 Outcome run_restitution_with_components(const Checked& run, Observer& observer);
@@ -30,6 +32,10 @@ Outcome run_cem_dampers(const Checked& run, Observer& observer);
 
 template <>
 Outcome run_exact_dampers<double>(const Checked&, Recorder&) {
+  refuse();
+}
+template <>
+Outcome run_exact_with_components<double>(const Checked&, Recorder&) {
   refuse();
 }
 template <>

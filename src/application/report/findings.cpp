@@ -156,16 +156,6 @@ void find_spread(Findings& findings) {
   }
 }
 
-// Returns the engine if it can have the scene, else the component element method with the same walls, which
-// locates impacts: the last ones are slow, and an error of the first order may add or lose one.
-Engine engine_for(const Scene& scene, const Engine& engine) {
-  if (incompatibilities_of(scene, engine).empty()) return engine;
-  Cem same_walls;
-  same_walls.calibration = calibration_of(engine);
-  same_walls.locate = true;
-  return same_walls;
-}
-
 FrictionFindings friction_findings(const Findings& findings, double coefficient, const Run& run) {
   FrictionFindings found;
   found.coefficient = coefficient;
@@ -201,9 +191,9 @@ void find_frictions(Findings& findings, const Threads& threads) {
     scenes[i].until_time = findings.run.end_time;
     for (SceneDamper& damper : scenes[i].dampers) damper.friction = friction_coefficients[i] * gravity;
   }
-  findings.engine_of_frictions = engine_for(scenes.front(), findings.run.engine);
+  if (!incompatibilities_of(scenes.front(), findings.run.engine).empty()) return;
   findings.frictions.push_back(friction_findings(findings, 0, findings.run));
-  const std::vector<Run> runs = simulate_scenes(scenes, findings.engine_of_frictions, {}, threads);
+  const std::vector<Run> runs = simulate_scenes(scenes, findings.run.engine, {}, threads);
   for (std::size_t i = 0; i < runs.size(); ++i)
     findings.frictions.push_back(friction_findings(findings, friction_coefficients[i], runs[i]));
 }

@@ -111,9 +111,9 @@ struct Findings {
   std::size_t shown = 0, shown_when_chosen = 0;
 
   // The run without friction, then with the coefficients friction_coefficients, for as long. Empty where
-  // friction is known or has no scale: of a dimensionless scene, of one with components.
+  // friction is known or has no scale: of a dimensionless scene, of one with components, and
+  // where the engine has no friction beside what the scene has.
   std::vector<FrictionFindings> frictions;
-  Engine engine_of_frictions;  // of all but the first
 
   // Half cycle by half cycle, as far as every release has them: (greatest - least) / median of the amplitude.
   std::vector<double> spread;

@@ -273,20 +273,19 @@ std::string cavity_sentences(const Findings& findings) {
   std::string text = findings.several() ? "It is assumed that the secondary masses move in level cavities"
                                         : "It is assumed that the secondary mass moves in a level cavity";
   text += " without friction, as on rollers or on a thread. ";
-  const std::string with_engine = " with <code>--engine restitution</code> or <code>cem</code> compute more.";
   if (subject.scales) {
     const double g = standard_gravity / subject.scales->of(Dimension::acceleration);
-    text += "If " + they + " slid with a coefficient of friction of 0.1, 0.2 or 0.3, " + they +
-            " would be held there below an amplitude of " + locking(0.1 * g) + ", " + locking(0.2 * g) +
-            " or " + locking(0.3 * g) + ", and would not leave the floor of an upright cavity below " +
-            locking(g) + ":" + damps_nothing +
-            " there. <code>friction_coefficient</code> and <code>inclination</code> in the scene," +
-            with_engine;
+    text +=
+        "If " + they + " slid with a coefficient of friction of 0.1, 0.2 or 0.3, " + they +
+        " would be held there below an amplitude of " + locking(0.1 * g) + ", " + locking(0.2 * g) + " or " +
+        locking(0.3 * g) + ", and would not leave the floor of an upright cavity below " + locking(g) + ":" +
+        damps_nothing +
+        " there. <code>friction_coefficient</code> and <code>inclination</code> in the scene compute more.";
   } else {
     text += "With a friction φ, divided by the mass and by εΩ², " + they +
             " would be held there below an amplitude of " +
             (findings.forced() ? "φε/ω<sup>2</sup>" : "about φε") + ":" + damps_nothing +
-            ". <code>--friction</code> and <code>--weight</code>" + with_engine;
+            ". <code>--friction</code> and <code>--weight</code> compute more.";
   }
   return paragraph_html(text);
 }

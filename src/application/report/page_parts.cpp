@@ -280,9 +280,7 @@ std::string friction_html(const Findings& findings) {
   const Quantities quantities(findings.subject.scales);
   const bool forced = findings.forced();
   HtmlTable table{.caption = "What sliding would change: the same run, of " +
-                             quantities.time(findings.run.end_time) +
-                             ", with friction, by the engine <code>" +
-                             std::string(name_of(findings.engine_of_frictions)) + "</code>",
+                             quantities.time(findings.run.end_time) + ", with friction",
                   .heads = {"Coefficient of friction"}};
   const std::vector<std::string> heads =
       forced ? std::vector<std::string>{"largest amplitude of the last quarter", "mean amplitude there"}
