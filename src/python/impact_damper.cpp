@@ -180,6 +180,13 @@ epsilon Omega_n, forces by K epsilon.
   add("dampers", "several: a list of dicts of the numbers of one, and clearance; what a\n" +
                      std::string(24, ' ') +
                      R"(run has of each is history["dampers"]["1"]["y"] and so on, from 1)");
+  add("wall", "the law of both walls, for the engine cem, a dict of what follows; default linear");
+  add("spring", "that of the primary spring; the same");
+  add("law", "power or table of a wall, cubic or table of a spring");
+  add("exponent", "of a power of the overlap; of a wall");
+  add("cubic", "c of the force x + c x^3; of a scene in units in N/mm^3");
+  add("pairs", "a table: [[overlap or displacement, force], ...], increasing");
+  add("file", "a CSV file with such a table");
   text +=
       "\n\nIn units. The first four must be given; what else is left out is 0 or as above, "
       "exciting_frequency that of\n"

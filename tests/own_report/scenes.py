@@ -544,7 +544,6 @@ def compare(page, text, run, scales):
 
 def frictions(page, scene, run, scales):
     """What the page says of friction, by runs of the scene with it that end with the page's own."""
-    engine = re.search(r"with friction, by the engine (\w+)", page.words["scene"])[1]
     ends = {"until_seconds": run["end_time"] * scales[0]}
     for mu in (0, 0.1, 0.2, 0.3):
         rubbed = {key: value for key, value in scene.items() if not key.startswith("until_")} | ends
@@ -553,7 +552,7 @@ def frictions(page, scene, run, scales):
         write("rubbed.json", rubbed)
         rows = run["half_cycles"]
         if mu:
-            rows = json.loads(call("run", "--scene", "rubbed.json", "--engine", engine, *(["--locate"] if engine == "cem" else [])).stdout)["half_cycles"]
+            rows = json.loads(call("run", "--scene", "rubbed.json", "--engine", run["engine"]["name"], *(["--locate"] if run["engine"].get("locate") else [])).stdout)["half_cycles"]
         impacts, amplitudes = rows["impacts"], rows["amplitude"]
         struck = [row for row, count in enumerate(impacts) if count]
         wanted = {"last impact": in_page(amplitudes[struck[-1]], scales), "its time": rows["peak_time"][struck[-1]] * scales[0],

@@ -62,7 +62,7 @@ StuckRelease stuck_release(double amplitude);
 // Plastic impacts, e = 0, x = A sin(tau), one on each wall in a cycle: up to A = 1/pi the mass flies on at
 // once (single_impact), above it sticks to its wall until x = 0 (stuck_release). z'' has at the fundamental
 // frequency the part A (in_phase sin(tau) + loss cos(tau)), with x'' being -A sin(tau); in_phase is -1 for a
-// mass that is locked, loss is eta/nu. A force of frequency w then holds (M14.11)
+// mass that is locked, loss is eta/nu. By (M14.10), a force of frequency w then holds (M14.11)
 //   (f0/A)^2 = (1 - w^2 (1 - nu in_phase))^2 + (nu w^2 loss)^2.
 struct PlasticImpacts {
   double in_phase = 0, loss = 0;

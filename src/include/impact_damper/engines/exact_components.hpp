@@ -4,7 +4,7 @@
 // Each secondary mass flies, pushes a wall, or is held by friction where it is, in flight or in its wall.
 // Between two events everything is linear with constant forces, and all move by power series, in pieces
 // (joint_contact.hpp). Events are the beginnings and ends of contacts, stops (y' falls through zero), and
-// ends of holding (M18.4). All are found by Lemma L1 among all masses at once (first_of_many.hpp). A contact
+// ends of holding (M18.22). All are found by Lemma L1 among all masses at once (first_of_many.hpp). A contact
 // of the only mass has a closed form besides, which takes its ringing in few steps (shifted_contact.hpp).
 //
 // After each event settle() decides anew who is held. How a decision and the search that follows it are kept
@@ -97,6 +97,7 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
     Real stiffness, damping, drag;          // K, c and d of (M18.1)
     Real friction, holds;                   // phi and phi_s
     bool still = false;                     // held by friction
+    Real resists{0};                        // the friction of a mass that slides: phi, in settle() also phi_s
     Real slides{0};                         // the sign of y' where friction acts, else 0
     std::optional<std::size_t> in_piece{};  // its index in pushed_, if it has to be in the series
     std::optional<std::size_t> impact{};    // the one that began its contact, by index in impact_loss
@@ -436,9 +437,16 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
       const Real w = masses_.w(i);
       mass.still = w == 0 && mass.holds > 0;
       mass.slides = mass.holds > 0 ? Real(w > 0) - Real(w < 0) : Real(0);
+      mass.resists = mass.still ? mass.holds : mass.friction;
     }
-    sum_up_held();
-    for (std::size_t changes = 0; change_one(changes > 8 * masses_.size()); ++changes) sum_up_held();
+    const auto change_all = [&] {
+      sum_up_held();
+      for (std::size_t changes = 0; change_one(changes > 8 * masses_.size()); ++changes) sum_up_held();
+    };
+    // First as if those let go had static friction still: so there is one answer, and who can be held is.
+    change_all();
+    for (Mass& mass : each_) mass.resists = mass.friction;
+    change_all();
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       if (!rests_on_wall(i)) continue;
       const Mass& mass = each_[i];
@@ -474,7 +482,7 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
         mass.slides = direction;
         return true;
       }
-      const Real pushed = -mass.slides * (now.value + wall_spring(i)) - mass.friction;
+      const Real pushed = -mass.slides * (now.value + wall_spring(i)) - mass.resists;
       if (pushed >= -error_for(i, now)) continue;
       mass.still = true;
       mass.slides = 0;
@@ -503,7 +511,7 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       const Mass& mass = each_[i];
       if (mass.still) continue;
-      const Real friction = mass.friction * mass.slides, spring = wall_spring(i),
+      const Real friction = mass.resists * mass.slides, spring = wall_spring(i),
                  damper = rate_damping(i) * masses_.w(i);
       sum += masses_.nu[i] * (friction + spring + damper);
       size += masses_.nu[i] * (absolute(friction) + absolute(spring) + absolute(damper));
