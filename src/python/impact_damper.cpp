@@ -187,6 +187,7 @@ epsilon Omega_n, forces by K epsilon.
   add("cubic", "c of the force x + c x^3; of a scene in units in N/mm^3");
   add("pairs", "a table: [[overlap or displacement, force], ...], increasing");
   add("file", "a CSV file with such a table");
+  add("speed", "at which a wall with a law has the restitution");
   text +=
       "\n\nIn units. The first four must be given; what else is left out is 0 or as above, "
       "exciting_frequency that of\n"
