@@ -98,7 +98,7 @@ demand(f", commit {commit}, \\texttt{{swh:1:dir:{tree}}}}},\n" in without_breaks
        f"commit {commit}, tree {tree}: {cite()}")
 version = manifest["software"]["version"]
 figures = {figure["figure"]: figure for figure in manifest["figures"]}
-demand(set(figures) == {*"ABCDEFGH", *map(str, range(1, 16))}, f"figures {sorted(figures)}")
+demand(set(figures) == {*"ABCDEFGHIJ", *map(str, range(1, 16))}, f"figures {sorted(figures)}")
 for number, figure in figures.items():
     table, script = figure["tables"][:1], figure["script"]["file"]
     stamped = new / table[0]["file"] if table else source / script

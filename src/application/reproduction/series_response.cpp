@@ -56,13 +56,14 @@ void add_linear_block(Table& table, const std::string& name, const std::string& 
 // amplitude, up the lower one and down the upper one, which meet where they begin or cease to be there.
 void add_plastic_block(Table& table, const std::string& name, const Scene& scene, const Axis& axis,
                        double most) {
-  constexpr int last = 400;
+  constexpr int count = 401;
   const double least = fold_amplitude(0);
-  std::array<double, last + 1> amplitudes{};
-  std::array<std::vector<double>, last + 1> frequencies;
-  for (int k = 0; k <= last; ++k) {
-    amplitudes[k] = least * exponential(logarithm(most / least) * k / last);
-    frequencies[k] = plastic_frequencies(scene.damper().mass_ratio, scene.force_amplitude, amplitudes[k]);
+  std::vector<double> amplitudes;
+  std::vector<std::vector<double>> frequencies;
+  for (int k = 0; k < count; ++k) {
+    amplitudes.push_back(least * exponential(logarithm(most / least) * k / (count - 1)));
+    frequencies.push_back(
+        plastic_frequencies(scene.damper().mass_ratio, scene.force_amplitude, amplitudes.back()));
   }
   Points points;
   const auto add = [&](int k, bool upper) {
@@ -70,13 +71,13 @@ void add_plastic_block(Table& table, const std::string& name, const Scene& scene
     const double frequency = upper ? frequencies[k].back() : frequencies[k].front();
     if (frequency >= axis.from && frequency <= axis.to) points.add(frequency, amplitudes[k]);
   };
-  for (int first = 0; first <= last; ++first) {
+  for (int first = 0; first < count; ++first) {
     if (frequencies[first].empty()) continue;
     int end = first;
-    while (end <= last && !frequencies[end].empty()) ++end;
+    while (end < count && !frequencies[end].empty()) ++end;
     points.interrupt();
     for (int k = first; k < end; ++k) add(k, false);
-    if (end > last) points.interrupt();
+    if (end == count) points.interrupt();
     for (int k = end; k-- > first;) add(k, true);
     if (first > 0) add(first, false);
     first = end;

@@ -106,9 +106,9 @@ std::vector<Problem> incompatibilities_of(const Scene& scene, const Engine& engi
   for (std::size_t i = 0; i < scene.dampers.size(); ++i) {
     const SceneDamper& damper = scene.dampers[i];
     const auto reject = [&](const char* name, const std::string& allowed, const std::string& who) {
-      problems.push_back(
-          {one ? std::string(name) : damper_field(i, name),
-           "must be " + allowed + " with the " + std::string(name_of(engine)) + " engine: only the " + who});
+      std::string message = "must be " + allowed;
+      message.append(" with the ").append(name_of(engine)).append(" engine: only the ").append(who);
+      problems.push_back({one ? std::string(name) : damper_field(i, name), message});
     };
     if (damper.wall.law != WallForm::linear && !cem)
       reject("wall", "linear", "cem engine has walls with laws of their own");

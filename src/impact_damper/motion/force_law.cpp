@@ -14,8 +14,11 @@ namespace {
 // has been looked for by doubling.
 template <class Holds>
 double last_where(double low, double high, Holds&& holds) {
-  for (double step = 1; high == std::numeric_limits<double>::infinity(); step *= 2)
+  double step = 1;
+  while (high == std::numeric_limits<double>::infinity()) {
     if (!holds(low + step)) high = low + step;
+    step *= 2;
+  }
   for (;;) {
     const double middle = low + (high - low) / 2;
     if (!(middle > low && middle < high)) return low;
