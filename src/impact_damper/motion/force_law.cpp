@@ -86,7 +86,8 @@ void ForceLaw::set_table(const Pairs& pairs) {
 }
 
 const ForceLaw::Piece& ForceLaw::piece_at(double q) const {
-  const auto next = std::ranges::upper_bound(pieces_, q, {}, &Piece::at);
+  const auto next = std::upper_bound(pieces_.begin(), pieces_.end(), q,
+                                     [](double value, const Piece& piece) { return value < piece.at; });
   return next == pieces_.begin() ? pieces_.front() : *(next - 1);
 }
 
