@@ -97,7 +97,7 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
     Real stiffness, damping, drag;          // K, c and d of (M18.1)
     Real friction, holds;                   // phi and phi_s
     bool still = false;                     // held by friction
-    Real resists{0};                        // the friction of a mass that slides: phi, in settle() also phi_s
+    bool stays = false;                     // held before the present event as well
     Real slides{0};                         // the sign of y' where friction acts, else 0
     std::optional<std::size_t> in_piece{};  // its index in pushed_, if it has to be in the series
     std::optional<std::size_t> impact{};    // the one that began its contact, by index in impact_loss
@@ -435,18 +435,16 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       Mass& mass = each_[i];
       const Real w = masses_.w(i);
+      mass.stays = mass.still;
       mass.still = w == 0 && mass.holds > 0;
       mass.slides = mass.holds > 0 ? Real(w > 0) - Real(w < 0) : Real(0);
-      mass.resists = mass.still ? mass.holds : mass.friction;
     }
-    const auto change_all = [&] {
+    // With static friction above friction there may be more than one answer: who is held already stays held
+    // where that can be, so those that have just stopped are decided upon first.
+    for (const bool all : {false, true}) {
       sum_up_held();
-      for (std::size_t changes = 0; change_one(changes > 8 * masses_.size()); ++changes) sum_up_held();
-    };
-    // First as if those let go had static friction still: so there is one answer, and who can be held is.
-    change_all();
-    for (Mass& mass : each_) mass.resists = mass.friction;
-    change_all();
+      for (std::size_t changes = 0; change_one(all, changes > 8 * masses_.size()); ++changes) sum_up_held();
+    }
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       if (!rests_on_wall(i)) continue;
       const Mass& mass = each_[i];
@@ -468,13 +466,14 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
       if (each_[i].still) forces_.held += masses_.nu[i];
   }
   // Lets go the first mass that cannot be held, or holds one again that would be pushed against the direction
-  // in which it was let go. Returns false if there is none. only_holds: static friction larger than friction
-  // leaves more than one answer, so that without an end to it one might be let go and held for ever.
-  bool change_one(bool only_holds) {
+  // in which it was let go. Returns false if there is none. all: not only those that have just stopped.
+  // only_holds: static friction larger than friction leaves more than one answer, so that without an end to
+  // it one might be let go and held for ever.
+  bool change_one(bool all, bool only_holds) {
     const Acceleration now = acceleration();
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       Mass& mass = each_[i];
-      if (masses_.u1[i] != 0 || !(mass.holds > 0)) continue;
+      if (masses_.u1[i] != 0 || !(mass.holds > 0) || (mass.stays && !all)) continue;
       if (mass.still) {
         const Real direction = only_holds ? Real(0) : goes(i, now);
         if (direction == 0) continue;
@@ -482,7 +481,7 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
         mass.slides = direction;
         return true;
       }
-      const Real pushed = -mass.slides * (now.value + wall_spring(i)) - mass.resists;
+      const Real pushed = -mass.slides * (now.value + wall_spring(i)) - mass.friction;
       if (pushed >= -error_for(i, now)) continue;
       mass.still = true;
       mass.slides = 0;
@@ -511,7 +510,7 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       const Mass& mass = each_[i];
       if (mass.still) continue;
-      const Real friction = mass.resists * mass.slides, spring = wall_spring(i),
+      const Real friction = mass.friction * mass.slides, spring = wall_spring(i),
                  damper = rate_damping(i) * masses_.w(i);
       sum += masses_.nu[i] * (friction + spring + damper);
       size += masses_.nu[i] * (absolute(friction) + absolute(spring) + absolute(damper));
