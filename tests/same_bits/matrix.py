@@ -220,8 +220,8 @@ def drawn_runs(catalogue: dict) -> list:
 def respond(entry: dict, scenes) -> list:
     """Of the catalogue's responses."""
     words = ["response", entry["kind"], "--scene", f"{scenes}/{entry['scene']}.json", "--quiet"]
-    for name, value in [*entry.get("set", {}).items(), *entry.get("rule", {}).items()]:
-        words.append(f"--{name.replace('_', '-')}={value}")
+    for options in (entry.get("set", {}), entry.get("rule", {}), entry.get("engine", {})):
+        words += [f"--{'engine' if name == 'name' else name.replace('_', '-')}={value}" for name, value in options.items()]
     for axis in entry["vary"]:
         count = f":{axis['count']}" if "count" in axis else ""
         words.append(f"--vary={axis['number']}={axis['from']}:{axis['to']}{count}")
