@@ -1,5 +1,6 @@
 // A motion is one part of a run, between two of its events, in closed form: Flight, Stuck, JoinedMasses,
-// ShiftedMotion, Contact, ContactWithoutModes, ShiftedContact or JointContact. All times are since the motion's beginning.
+// ShiftedMotion, Contact, ContactWithoutModes, ShiftedContact or JointContact. All times are since the
+// motion's beginning.
 #pragma once
 
 #include <concepts>
