@@ -395,8 +395,8 @@ class Integrator {
   // A compliant wall is met.
   void touch(Damper& each) {
     each.impact.reset();
-    // Only at the beginning a contact needs no impact; one damper comes to rest on a wall by rounding only, or
-    // by friction.
+    // Only at the beginning a contact needs no impact; one damper comes to rest on a wall by rounding only,
+    // or by friction.
     if (each.s < 0 || (t_ > 0 && (!alone() || each.static_friction > 0))) {
       each.impact = answer_.impacts.size();
       answer_.impacts.push_back({t_, number_of(each), each.wall(), each.side * each.s, x_, 0});

@@ -1,5 +1,5 @@
-// Contact with a compliant wall under friction and weight (docs/mathematics.md, M18.21): what is constant in it
-// only shifts the place of rest, about which x and q move as in contact.hpp.
+// Contact with a compliant wall under friction and weight (docs/mathematics.md, M18.21): what is constant in
+// it only shifts the place of rest, about which x and q move as in contact.hpp.
 #pragma once
 
 #include <array>
