@@ -446,8 +446,8 @@ std::string loads_html(const Findings& findings) {
   } else if (has_rigid_walls(findings.subject.engine)) {
     text =
         "The walls of this engine are rigid and impacts take no time: the force and the duration of a "
-        "contact follow from the stiffness of the walls, with the engine <code>" +
-        std::string(is_ideal(scene) ? Exact::name : Cem::name) + "</code>. ";
+        "contact follow from the stiffness of the walls" +
+        (has_laws(scene) ? "" : ", with the engine <code>" + std::string(Exact::name) + "</code>") + ". ";
   } else if (scene.damper().wall.law != WallForm::linear) {
     text = "The walls have a law of their own: there is no closed form for the force of a contact. ";
   } else {

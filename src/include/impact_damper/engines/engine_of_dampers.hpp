@@ -2,7 +2,9 @@
 // and how it is advanced, recorded and ended.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -11,6 +13,13 @@
 #include "impact_damper/engines/secondary_masses.hpp"
 
 namespace impact_damper {
+
+// A contact with a compliant wall that is under way.
+template <class Real>
+struct WallContact {
+  std::optional<std::size_t> impact{};  // the one that began it, by index in impact_loss
+  Real work{0};                         // of the wall's damper
+};
 
 // Base class of these engines. A secondary mass is either in flight or held at a wall: it sticks to a rigid
 // one, or pushes a compliant one.
@@ -123,6 +132,38 @@ class EngineOfDampers {
     const double begin = masses_.held_since[i], end = tracker_.time();
     if (observer_.wants_contacts() && begin <= end)
       observer_.contact(begin, end, masses_.wall(i), masses_.number[i]);
+  }
+
+  // Notes that a contact has begun with an impact, the last one reported.
+  void begin_with_impact(WallContact<Real>& contact) {
+    if (!observer_.wants_energy()) return;
+    contact.impact = observer_.energy_balance().impact_loss.size();
+    observer_.energy_balance().impact_loss.push_back(0);
+  }
+  // Ends the contact of the i-th mass, and counts what its wall has taken.
+  void end_contact(std::size_t i, WallContact<Real>& contact) {
+    let_go(i);
+    if (observer_.wants_energy()) {
+      EnergyBalance& balance = observer_.energy_balance();
+      losses_ += contact.work;
+      if (contact.impact) {
+        balance.impact_loss[*contact.impact] = double(contact.work);
+        energy_of(i).impact_loss += double(contact.work);
+      } else {
+        balance.contact_loss += double(contact.work);
+        energy_of(i).contact_loss += double(contact.work);
+      }
+    }
+    contact = {};
+    masses_.u[i] = 0;
+  }
+  // Counts what friction and drag have taken from the i-th mass in the whole run.
+  void count_in_cavity(std::size_t i, const Real& by_friction, const Real& by_drag) {
+    losses_ += by_friction + by_drag;
+    energy_of(i).friction_loss = double(by_friction);
+    energy_of(i).drag_loss = double(by_drag);
+    observer_.energy_balance().friction_loss += energy_of(i).friction_loss;
+    observer_.energy_balance().drag_loss += energy_of(i).drag_loss;
   }
 
   const System<Real, Force>& system_;

@@ -76,14 +76,8 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
     for (std::size_t i = 0; i < masses_.size(); ++i)
       if (masses_.held[i]) leave(i);
     if (balance) {
-      for (std::size_t i = 0; i < masses_.size(); ++i) {
-        const Mass& mass = each_[i];
-        losses_ += mass.by_friction.now() + mass.by_drag;
-        energy_of(i).friction_loss = double(mass.by_friction.now());
-        energy_of(i).drag_loss = double(mass.by_drag);
-        observer_.energy_balance().friction_loss += energy_of(i).friction_loss;
-        observer_.energy_balance().drag_loss += energy_of(i).drag_loss;
-      }
+      for (std::size_t i = 0; i < masses_.size(); ++i)
+        Base::count_in_cavity(i, each_[i].by_friction.now(), each_[i].by_drag);
       Base::finish(last);
       if (!lists_dampers_) observer_.energy_balance().dampers.clear();
     }
@@ -100,9 +94,8 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
     bool stays = false;                     // held before the present event as well
     Real slides{0};                         // the sign of y' where friction acts, else 0
     std::optional<std::size_t> in_piece{};  // its index in pushed_, if it has to be in the series
-    std::optional<std::size_t> impact{};    // the one that began its contact, by index in impact_loss
-    Real work{0};                           // of its wall's damper in this contact
-    Clock<Real> by_friction{};              // lost: a sum of many small terms, as time is
+    WallContact<Real> contact{};
+    Clock<Real> by_friction{};  // lost: a sum of many small terms, as time is
     Real by_drag{0};
     Real rounding_of_u{0}, rounding_of_w{0};  // at the end of the last piece
   };
@@ -362,7 +355,7 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
     const Real& nu = masses_.nu[i];
     if (mass.slides != 0) mass.by_friction.advance(Real(nu * mass.friction * way));
     mass.by_drag += nu * mass.drag * sum_ww;
-    if (masses_.held[i]) mass.work += nu * mass.damping * sum_ww;
+    if (masses_.held[i]) mass.contact.work += nu * mass.damping * sum_ww;
   }
 
   // Carries out an event after a time t of the piece, and others of its kind that rounding cannot tell apart
@@ -396,9 +389,7 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
     Base::report_impact(i, wall);
     masses_.arrive(i, wall);
     enter(i);
-    if (!observer_.wants_energy()) return;
-    each_[i].impact = observer_.energy_balance().impact_loss.size();
-    observer_.energy_balance().impact_loss.push_back(0);
+    Base::begin_with_impact(each_[i].contact);
   }
   // Sets y' of a mass to zero. If rounding has left it beyond a wall it is on that wall.
   void stop(std::size_t i) {
@@ -409,22 +400,7 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
   }
   void enter(std::size_t i) { Base::hold(i, tracker_.now()); }
   void leave(std::size_t i) {
-    Base::let_go(i);
-    Mass& mass = each_[i];
-    if (observer_.wants_energy()) {
-      EnergyBalance& balance = observer_.energy_balance();
-      losses_ += mass.work;
-      if (mass.impact) {
-        balance.impact_loss[*mass.impact] = double(mass.work);
-        energy_of(i).impact_loss += double(mass.work);
-      } else {
-        balance.contact_loss += double(mass.work);
-        energy_of(i).contact_loss += double(mass.work);
-      }
-    }
-    mass.impact.reset();
-    mass.work = 0;
-    masses_.u[i] = 0;
+    Base::end_contact(i, each_[i].contact);
     if (masses_.u1[i] < 0) masses_.u1[i] = 0;  // by rounding
   }
 

@@ -92,8 +92,7 @@ class ExactOfDampers : EngineOfDampers<Real, Force, Observer> {
   struct OwnWall {
     Real stiffness, damping;  // K and c of (M2.2)
     std::shared_ptr<const ContactModes<Real, Force>> modes{};
-    std::optional<std::size_t> impact{};  // the one that began the contact, by index in impact_loss
-    Real work{0};                         // of the wall's damper in this contact
+    WallContact<Real> contact{};
   };
   struct Event {
     std::size_t index;
@@ -201,7 +200,7 @@ class ExactOfDampers : EngineOfDampers<Real, Force, Observer> {
           const State<Real> now = state(t);
           return std::array{now.y, now.w};
         });
-    walls_[i].work += works.wall;
+    walls_[i].contact.work += works.wall;
     take_events();
   }
   // Returns the departure of x from its straight line and the change of x' at t, while one mass is in
@@ -273,7 +272,7 @@ class ExactOfDampers : EngineOfDampers<Real, Force, Observer> {
         [&](std::size_t k, const Real& t) { return piece.overlap(k, t); });
     if (observer_.wants_energy()) {
       for (std::size_t k = 0; k < in_contact_.size(); ++k)
-        walls_[in_contact_[k]].work += piece.wall_work(k, tracker_.passed());
+        walls_[in_contact_[k]].contact.work += piece.wall_work(k, tracker_.passed());
     }
     take_events();
   }
@@ -348,9 +347,9 @@ class ExactOfDampers : EngineOfDampers<Real, Force, Observer> {
       for (std::size_t k = 0; k < in_contact_.size(); ++k) {
         OwnWall& wall = walls_[in_contact_[k]];
         const auto rates = [&](const Real& t) { return std::array{Real(0), overlap(k, t)[1]}; };
-        wall.work += integrated_work(system_, rates, panel, begin, tracker_.passed(),
-                                     Real(masses_.nu[in_contact_[k]] * wall.damping), search)
-                         .wall;
+        wall.contact.work += integrated_work(system_, rates, panel, begin, tracker_.passed(),
+                                             Real(masses_.nu[in_contact_[k]] * wall.damping), search)
+                                 .wall;
       }
     }
     take_events();
@@ -411,9 +410,7 @@ class ExactOfDampers : EngineOfDampers<Real, Force, Observer> {
       Base::report_impact(i, *met);
       masses_.arrive(i, *met);
       enter(i);
-      if (!observer_.wants_energy()) continue;
-      walls_[i].impact = observer_.energy_balance().impact_loss.size();
-      observer_.energy_balance().impact_loss.push_back(0);
+      Base::begin_with_impact(walls_[i].contact);
     }
   }
   void enter(std::size_t i) {
@@ -422,22 +419,7 @@ class ExactOfDampers : EngineOfDampers<Real, Force, Observer> {
     pieces_together_ = 0;
   }
   void leave(std::size_t i) {
-    Base::let_go(i);
-    OwnWall& wall = walls_[i];
-    if (observer_.wants_energy()) {
-      EnergyBalance& balance = observer_.energy_balance();
-      losses_ += wall.work;
-      if (wall.impact) {
-        balance.impact_loss[*wall.impact] = double(wall.work);
-        energy_of(i).impact_loss += double(wall.work);
-      } else {
-        balance.contact_loss += double(wall.work);
-        energy_of(i).contact_loss += double(wall.work);
-      }
-    }
-    wall.impact.reset();
-    wall.work = 0;
-    masses_.u[i] = 0;
+    Base::end_contact(i, walls_[i].contact);
     std::erase(in_contact_, i);
     pieces_together_ = 0;
   }

@@ -79,11 +79,7 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
     for (std::size_t i = 0; i < masses_.size(); ++i) let_go(i);
     if (observer_.wants_energy()) {
       Base::note_kinetic(&DamperEnergy::final_kinetic);
-      for (std::size_t i = 0; i < masses_.size(); ++i) {
-        losses_ += lost_[i].now();
-        energy_of(i).friction_loss = double(lost_[i].now());
-        observer_.energy_balance().friction_loss += energy_of(i).friction_loss;
-      }
+      for (std::size_t i = 0; i < masses_.size(); ++i) Base::count_in_cavity(i, lost_[i].now(), Real(0));
       Base::finish(energy_now());
       if (!lists_dampers_) observer_.energy_balance().dampers.clear();
     }

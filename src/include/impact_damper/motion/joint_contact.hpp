@@ -23,8 +23,6 @@
 
 namespace impact_damper {
 
-// The motion (motion.hpp) of one piece at a time. y and y' in its states are not used. Arguments and results
-// are in t. The series inside are in s = t/h_: their terms are h_^n/n! times the n-th derivatives by t.
 // What is constant in a piece with components.
 template <class Real>
 struct ConstantForces {
@@ -33,6 +31,8 @@ struct ConstantForces {
   Real weight{0}, held{0};       // gamma, and sigma: the masses that are held
 };
 
+// The motion (motion.hpp) of one piece at a time. y and y' in its states are not used. Arguments and results
+// are in t. The series inside are in s = t/h_: their terms are h_^n/n! times the n-th derivatives by t.
 template <class Real, class Force, bool components = false>
 class JointContact : public ProofsByBounds<JointContact<Real, Force, components>, Real> {
  public:
