@@ -171,13 +171,14 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
   // Sets watched_ to what may end the piece. Returns the shortest time in which one of these changes.
   Real watch_all() {
     watched_.clear();
-    const Real noise = 4 * acceleration().error, tiny = 4 * at_edge * std::numeric_limits<Real>::epsilon();
+    const Acceleration acceleration_now = acceleration();
     const Real most_of_x = piece_.second_of_x();
     Real resolution = piece_.resolution();
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       const Mass& mass = each_[i];
+      const Real noise = 4 * error_for(i, acceleration_now);
       if (mass.still) {
-        watch_edges(i, Real(noise + tiny * (mass.holds + absolute(wall_spring(i)))));
+        watch_edges(i, noise);
         continue;
       }
       const Real &u = masses_.u[i], &u1 = masses_.u1[i];
@@ -187,7 +188,7 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
           (mass.holds == 0 || absolute(u1) > most * piece_.length()))
         continue;
       const Real now = mass.in_piece ? absolute(piece_.second_of_q(*mass.in_piece)) : most;
-      if (u1 != 0 || u > 0) {
+      if (u1 != 0 || u != 0) {
         const Real changes = u1 != 0 ? Real(absolute(u1) / now) : square_root(Real(2 * absolute(u) / now));
         if (changes < resolution) resolution = changes;
       }
@@ -237,7 +238,8 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
     if (order > 0) {
       const auto n = std::size_t(order);
       const Real next = piece_.begins(function, n + 1);
-      if (const Real first = piece_.begins(function, n); first >= -noise && first < next * Real(1e-6)) {
+      if (const Real first = piece_.begins(function, n);
+          next > 0 && first >= -noise && first < next * Real(1e-6)) {
         const Real leaves = Real(1.5) * next / piece_.bound(function, n + 2);
         each.begin = leaves < piece_.length() ? leaves : piece_.length();
       }
@@ -335,10 +337,11 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
       if (mass.still) continue;
       const auto [u, u1] = place(i, t, now);
       if (observer_.wants_energy()) add_losses(i, sum_ww(i, t, works), Real(absolute(u - masses_.u[i])));
+      const Real epsilon = std::numeric_limits<Real>::epsilon(), speed = absolute(masses_.u1[i]),
+                 pulled = absolute(pull(i)) * t;
       mass.rounding_of_u =
-          16 * std::numeric_limits<Real>::epsilon() * (absolute(masses_.u[i]) + absolute(masses_.u1[i]) * t);
-      mass.rounding_of_w = 16 * std::numeric_limits<Real>::epsilon() *
-                           (absolute(masses_.u1[i]) + absolute(now.dv) + absolute(pull(i)) * t);
+          16 * epsilon * (absolute(masses_.u[i]) + speed * t + absolute(now.dx) + pulled * t / 2);
+      mass.rounding_of_w = 16 * epsilon * (speed + absolute(now.dv) + pulled);
       masses_.u[i] = u;
       masses_.u1[i] = u1;
       if (mass.slides == 0 || mass.slides * masses_.w(i) > 0) continue;
@@ -362,6 +365,8 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
   // from it. Returns false if they are impacts more than the impact budget allows.
   bool take(const Which& event, const Real& t) {
     const std::size_t i = event.mass;
+    const bool to_wall = event.kind == Kind::near_wall || event.kind == Kind::far_wall;
+    if (to_wall && each_[i].slides != 0 && masses_.u1[i] == 0) return true;  // stopped on it, by rounding
     if (event.kind == Kind::depth) {
       leave(i);
       for (std::size_t j = 0; j < masses_.size(); ++j)
@@ -370,7 +375,7 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
       stop(i);
       for (std::size_t j = 0; j < masses_.size(); ++j)
         if (each_[j].slides != 0 && absolute(masses_.u1[j]) <= each_[j].rounding_of_w) stop(j);
-    } else if (event.kind == Kind::near_wall || event.kind == Kind::far_wall) {
+    } else if (to_wall) {
       const Real most = piece_.second_of_x();
       Base::find_meeting(
           meeting_, i, event.kind == Kind::near_wall, t,
