@@ -799,6 +799,21 @@ TEST_CASE("a mass that hardly arrives is at one instant with another that roundi
   }
 }
 
+TEST_CASE("slow masses released onto their walls meet them together, plastic ones as well") {
+  // Each alone would have ended its chattering at once.
+  Scene scene{.x0 = -0.5, .until_time = 0.01};
+  scene.dampers = {{.mass_ratio = 1e-4, .restitution = 0, .clearance = 1, .w0 = -2e-7},
+                   {.mass_ratio = 6e-4, .restitution = 0.1, .clearance = 1, .w0 = -8e-5},
+                   {.mass_ratio = 0.02, .restitution = 0.4, .clearance = 1, .w0 = -5e-7}};
+  const Run run = run_of(scene, rigid);
+  REQUIRE(run.impacts->time.size() >= 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(run.impacts->damper[i] == int(i));
+    CHECK(run.impacts->time[i] == 0);
+    CHECK(run.impacts->relative_velocity[i] == scene.dampers[i].w0);
+  }
+}
+
 TEST_CASE("sticking masses count to the primary mass, and leave together") {
   // Plastic dampers: both come to rest on the same wall, and are let go when x'' changes its sign.
   Scene scene{.x0 = 1, .until_time = 20};

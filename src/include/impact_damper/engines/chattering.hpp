@@ -111,6 +111,8 @@ class ChatteringLimit {
       const Real moves = masses_.nu[i] * square / per_moves;
       if (!(moves <= moves_little)) continue;
       if (!masses_.held[i] && !masses_.is_settled(i, square_root(square), tolerance_)) continue;
+      // This one meets its wall in this instant, maybe together with others: an impact (M17.2) comes first.
+      if (!masses_.held[i] && masses_.u[i] == 0 && masses_.u1[i] < 0) continue;
       all.mass += masses_.nu[i];
       all.loses += loses(i);
       if (masses_.held[i]) continue;
