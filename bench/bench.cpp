@@ -152,6 +152,8 @@ int bench(const Arguments& arguments) {
     found.speedup = measure_speedup(quick ? 3 : 41);
     tell("sweeps");
     found.many_runs = measure_many_runs(quick ? 3 : 21);
+    tell("friction, weight and drag");
+    found.components = measure_components(quick ? 5 : 31);
     tell("elementary functions");
     found.functions = measure_functions(quick ? 9 : 101);
   }

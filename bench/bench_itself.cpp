@@ -479,6 +479,17 @@ TEST_CASE("an impact with several dampers may cost 20 ns more for each further o
   CHECK(find(results, "exact: time per impact on S9, list of 20").within());
 }
 
+TEST_CASE("what a component costs is held against its bound") {
+  Findings found;
+  found.components = {{"exact", "friction", 1.5, {1.3, 1.4, 1.6}}, {"exact", "drag", 3, {3, 3.2, 3.3}}};
+  const std::vector<Result> results = results_of(found);
+  const Result& friction = find(results, "exact: time per impact with friction");
+  CHECK(*friction.measured == 1.4);
+  CHECK(friction.note == "quartiles 1.3 to 1.6");
+  CHECK(friction.within());
+  CHECK(!find(results, "exact: time per impact with drag").within());
+}
+
 TEST_CASE("the best of two peers is what an engine is held against") {
   Findings found;
   found.curves.push_back(curve_of("S1", "exact", {{0, 1e-13, 10}}));

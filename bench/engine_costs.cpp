@@ -146,7 +146,45 @@ void add_sweeps(double most_impacts, const std::function<void(const std::string&
   all.push_back(restitution);
 }
 
+struct Component {
+  std::string name;
+  double bound;
+  Scene scene;
+};
+
+template <class Options>
+ComponentCost measure_component(const Component& component, int repeats) {
+  const Scene plain{.x0 = 6, .until_amplitude = 0.5};
+  const auto seconds_per_impact = [](const Scene& scene) {
+    const Checked run = checked(scene, Options{});
+    QuietObserver observer;
+    const double seconds = cpu_seconds([&] {
+      for (int i = 0; i < 20; ++i) run_by<Options>(run, observer);
+    });
+    return seconds / double(observer.impacts);
+  };
+  std::vector<double> ratios;
+  for (int i = 0; i < repeats; ++i)
+    ratios.push_back(seconds_per_impact(component.scene) / seconds_per_impact(plain));
+  return {std::string(Options::name), component.name, component.bound, spread_of(ratios)};
+}
+
 }  // namespace
+
+std::vector<ComponentCost> measure_components(int repeats) {
+  const auto with = [](double weight, const SceneDamper& damper) {
+    return Scene{.x0 = 6, .weight = weight, .until_amplitude = 0.5, .dampers = {damper}};
+  };
+  const std::vector<Component> components{{"friction", 1.5, with(0, {.friction = 1e-3})},
+                                          {"weight", 1.5, with(1e-3, {})},
+                                          {"drag", 3, with(0, {.drag = 1e-3})}};
+  std::vector<ComponentCost> all;
+  for (const Component& each : components) {
+    all.push_back(measure_component<Exact>(each, repeats));
+    all.push_back(measure_component<Restitution>(each, repeats));
+  }
+  return all;
+}
 
 std::vector<Allocations> count_allocations() {
   const Scene decay{.x0 = 6, .until_amplitude = 0.03};

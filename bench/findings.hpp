@@ -34,6 +34,7 @@ struct Findings {
   std::optional<Speedup> speedup;
   std::vector<ManyRuns> many_runs;
   std::vector<FunctionCost> functions;
+  std::vector<ComponentCost> components;
   std::vector<std::string> missing_peers;
   double seconds = 0;  // that it all took, by the clock on the wall
 

@@ -22,6 +22,15 @@ struct Allocations {
 // replacement would not be in force.
 std::vector<Allocations> count_allocations();
 
+// How much longer a decay from 6 to 0.5 takes for an impact with so little of a component that it hardly
+// changes what happens.
+struct ComponentCost {
+  std::string engine, component;
+  double bound = 0;
+  Spread ratio;  // of repeats taken in turn
+};
+std::vector<ComponentCost> measure_components(int repeats);
+
 // S6: everything behind the paper's figures, in process and on one core: the eight scenes, and from their
 // runs all tables that gnuplot draws, as text. Only files are not touched.
 struct FigureSet {

@@ -313,6 +313,11 @@ std::vector<Result> results_of(const Findings& found) {
                                          "; beside it the analysis of the runs " +
                                          digits(100 * many.analysis.median, "%.1f") + " %"});
   }
+  for (const ComponentCost& cost : found.components) {
+    add(at_most(cost.engine + ": time per impact with " + cost.component + " by that without", cost.bound,
+                "x"),
+        {cost.ratio.median, "quartiles " + digits(cost.ratio.lower) + " to " + digits(cost.ratio.upper)});
+  }
   for (const FunctionCost& function : found.functions) {
     add(at_most(function.name + ", " + function.arguments + ": time by the C library's", 1.5, "x"),
         {function.ratio.median, digits(function.own.median * 1e9) + " ns, error " +
