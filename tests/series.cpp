@@ -136,7 +136,7 @@ TEST_CASE("the project's catalogue has Figures 1 to 15, A to J, from eight disti
 
   // Those that measures compare with.
   const Engine near_contact = Cem{.locate = true, .large_step = 0.02};
-  REQUIRE(catalogue.runs.size() == 31);
+  REQUIRE(catalogue.runs.size() == 35);
   for (const CatalogueRun& run : catalogue.runs)
     CHECK(run.scene ==
           (run.name.starts_with("dampers-") ? run.name : run.name.substr(0, run.name.find('.'))));
@@ -1042,14 +1042,18 @@ TEST_CASE("friction, weight and drag are drawn in a panel each, beside none, wit
                   {"held", {"held.json", decay(0.03, 0.8, 0, 0)}},
                   {"little", {"little.json", decay(0.03, 0.1, 0, 0)}},
                   {"heavy", {"heavy.json", decay(0.04, 0, 2, 0)}},
-                  {"wet", {"wet.json", decay(0.05, 0, 0, 0.3)}}};
+                  {"wet", {"wet.json", decay(0.05, 0, 0, 0.3)}},
+                  {"hertz", {"hertz.json", decay(0.06, 0, 0, 0)}},
+                  {"lined", {"lined.json", decay(0.07, 0, 0, 0)}}};
   runs["held"].run.scene.damper().static_friction = 1.5;
-  Figure figure = figure_of("I", TableKind::components, {"", "", "", "", ""});
+  runs["hertz"].run.scene.damper().wall = {.law = WallForm::power, .exponent = 1.5};
+  runs["lined"].run.scene.damper().wall = {.law = WallForm::table, .pairs = {{0, 0}, {0.1, 5}}};
+  Figure figure = figure_of("I", TableKind::components, {"", "", "", "", "", "", ""});
   figure.range = {0.5, 5};
-  const char* const names[] = {"none", "little", "held", "heavy", "wet"};
-  for (std::size_t i = 0; i < 5; ++i) figure.curves[i].run = names[i];
+  const char* const names[] = {"none", "little", "held", "heavy", "wet", "hertz", "lined"};
+  for (std::size_t i = 0; i < 7; ++i) figure.curves[i].run = names[i];
   const Table table = figure_table(figure, runs);
-  REQUIRE(table.blocks.size() == 9);
+  REQUIRE(table.blocks.size() == 12);
   const auto check_curve = [&](const std::string& name, double eta, const std::string& legend) {
     CAPTURE(name);
     const TableBlock& curve = block(table, name);
@@ -1068,6 +1072,9 @@ TEST_CASE("friction, weight and drag are drawn in a panel each, beside none, wit
   check_curve("curve-2-2", 0.04, "γ = 2");
   check_curve("curve-3-1", 0.03, "d = 0");
   check_curve("curve-3-2", 0.05, "d = 0.3");
+  check_curve("curve-4-1", 0.03, "rigid");
+  check_curve("curve-4-2", 0.06, "p = 1.5");
+  check_curve("curve-4-3", 0.07, "table");
   const TableBlock& none = block(table, "curve-1-1");
   for (std::size_t i = 0; i < 12; ++i) {
     CHECK(none.columns[2].values[i] == doctest::Approx(none.columns[0].values[i] * 0.02 / 0.21));
@@ -1083,7 +1090,14 @@ TEST_CASE("friction, weight and drag are drawn in a panel each, beside none, wit
     CHECK(contains(rejection(figure, changed), why));
   };
   rejected([](FigureRuns& all) { all["wet"].run.scene.weight = 1; },
-           "wet.json: must have one of friction, weight and drag");
+           "wet.json: must have one of friction, weight, drag and a law of the walls");
+  rejected([](FigureRuns& all) { all["hertz"].run.scene.weight = 1; },
+           "hertz.json: must have one of friction, weight, drag and a law of the walls");
+  rejected(
+      [](FigureRuns& all) {
+        all["none"].run.scene.spring.cubic = 1, all["none"].run.scene.spring.law = SpringForm::cubic;
+      },
+      "none.json: must have one of friction, weight, drag and a law of the walls");
   rejected([](FigureRuns& all) { all["wet"].run.scene.dampers.push_back({}); },
            "wet.json: must be of a single damper");
   rejected([](FigureRuns& all) { all["heavy"].run.scene.damper().mass_ratio = 0.1; },

@@ -252,7 +252,7 @@ class Case:
             kept += [f"loss_factor_at={level}", "largest_loss_factor", "amplitude_of_largest_loss_factor",
                      "lowest_amplitude_above_loss=0.01", "highest_amplitude_above_loss=0.02"]
         elif not several:
-            kept += ["steady_amplitude", "steady_period", "impacts_per_period", "lyapunov_exponent"][:self.one_of(0, 0, 4)]
+            kept += ["steady_amplitude", "steady_period", "transient_periods", "impacts_per_period", "lyapunov_exponent"][:self.one_of(0, 0, 5)]
         self.add("--keep", ",".join(self.random.sample(kept, self.random.randint(1, len(kept)))))
         self.output("out.csv", "sweep")
 

@@ -246,6 +246,17 @@ TEST_CASE(
   CHECK(*numbers.numbers[2] == doctest::Approx(exponent / 0.2).epsilon(1e-12));
   CHECK(*numbers.numbers[3] == doctest::Approx(10 * linear_response(0.01, 1, 0.1, 0.5)).epsilon(1e-6));
 
+  const Scene chaotic{.damping_ratio = 0.01,
+                      .x0 = 0,
+                      .force_amplitude = 0.02,
+                      .force_frequency = 1,
+                      .until_time = 1,
+                      .dampers = {{.mass_ratio = 0.005}}};
+  const KeptNumbers chaos = kept(chaotic, {"steady_amplitude", "steady_period", "transient_periods"});
+  CHECK(chaos.numbers[0]);
+  CHECK_FALSE(chaos.numbers[1]);
+  CHECK_FALSE(chaos.numbers[2]);
+
   Scene list = scene;
   list.force_amplitude = 0.2;
   list.dampers = {{}, {.clearance = 0.7}};
@@ -272,6 +283,12 @@ TEST_CASE("a motion that still grows has no steady amplitude, alone or among oth
     CHECK_FALSE(growing.numbers[0]);
   }
   rules.steady.max_periods = 5000;
+  // exp(-2 pi zeta n) of the distance at first is left after n periods, (M14.2) in units of the amplitude;
+  // the largest of four differences is that of three periods before.
+  rules.steady.tolerance = 1e-6;
+  const double periods = std::log(1 / rules.steady.tolerance) / (2 * std::numbers::pi * 0.001);
+  CHECK(only(kept(scene, {"transient_periods"}, Exact{}, {}, rules)) ==
+        doctest::Approx(periods + 3).epsilon(1e-3));
   CHECK(only(kept(scene, {"steady_amplitude"}, Exact{}, {}, rules)) ==
         doctest::Approx(linear_response(0.01, 1, 0.001, 1)).epsilon(1e-3));
 }

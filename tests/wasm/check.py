@@ -34,7 +34,8 @@ CLOSED_FORM = [{"name": "exact"}, {"name": "restitution"}]
 # The component element method takes a hundred times as long: it has only the shorter scenes.
 ALL = CLOSED_FORM + [{"name": "cem", "time_step": 4e-4}]
 SCENES = [(scene, engine) for folder, engines in (("data/scenes", CLOSED_FORM), ("tests/same_bits/scenes", ALL))
-          for scene in sorted((SOURCE / folder).glob("*.json")) for engine in engines]
+          for scene in sorted((SOURCE / folder).glob("*.json")) for engine in engines
+          if engine["name"] == "cem" or '"law"' not in scene.read_text()]  # no other engine has laws of walls
 PAGE = """<!doctype html>
 <link rel="icon" href="data:,">
 <title>The package in a browser</title>

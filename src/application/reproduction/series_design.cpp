@@ -1,10 +1,12 @@
 // Tables of what a damper is chosen by: the design charts, from a sweep over restitution and mass ratio that
 // keeps the loss factor at many amplitudes, of several releases each; several dampers, their loss together
-// beside the sum of the losses of each alone; and one with friction, weight or drag.
+// beside the sum of the losses of each alone; and one with friction, weight, drag or a law of the walls.
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <string>
 #include <utility>
 
 #include "application/reproduction/series.hpp"
@@ -69,20 +71,41 @@ void add_runs(const Figure& figure, const FigureRuns& runs, Table& table) {
 
 // The components of a scene, one to a panel.
 struct Component {
-  const char* symbol;
-  double (*of)(const Scene&);
-};
-constexpr std::array components{Component{"φ", [](const Scene& scene) { return scene.damper().friction; }},
-                                Component{"γ", [](const Scene& scene) { return scene.weight; }},
-                                Component{"d", [](const Scene& scene) { return scene.damper().drag; }}};
+  const char *symbol, *without;  // `without`: the legend where there is none
+  double (*of)(const Scene&);    // 0 where there is none
 
-// Throws unusable() unless the run is of a single damper with one component at most and, this aside, has the
-// ratios of the first.
+  std::string legend(const Scene& scene) const {
+    const double value = of(scene);
+    if (value == 0) return without;
+    return std::isfinite(value) ? std::string(symbol) + " = " + number_text(value) : "table";
+  }
+};
+// Returns the exponent of the walls' force; infinity for a table.
+double exponent_of_walls(const Scene& scene) {
+  switch (scene.damper().wall.law) {
+    case WallForm::linear:
+      return 0;
+    case WallForm::power:
+      return scene.damper().wall.exponent;
+    case WallForm::table:
+      break;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+constexpr std::array components{
+    Component{"φ", "φ = 0", [](const Scene& scene) { return scene.damper().friction; }},
+    Component{"γ", "γ = 0", [](const Scene& scene) { return scene.weight; }},
+    Component{"d", "d = 0", [](const Scene& scene) { return scene.damper().drag; }},
+    Component{"p", "rigid", exponent_of_walls}};
+
+// Throws unusable() unless the run is of a single damper with one component at most, without other laws, and
+// has the ratios of the first.
 void check_component(const Figure& figure, const FigureRun& source, const FigureRun& first) {
   const Scene &scene = source.run.scene, &wanted = first.run.scene;
   if (!has_one_damper(scene)) throw unusable(figure, source.file, "must be of a single damper");
-  if (std::ranges::count_if(components, [&](const Component& each) { return each.of(scene) != 0; }) > 1)
-    throw unusable(figure, source.file, "must have one of friction, weight and drag");
+  if (std::ranges::count_if(components, [&](const Component& each) { return each.of(scene) != 0; }) !=
+      (is_ideal(scene) ? 0 : 1))
+    throw unusable(figure, source.file, "must have one of friction, weight, drag and a law of the walls");
   if (scene.damper().mass_ratio != wanted.damper().mass_ratio ||
       scene.damper().restitution != wanted.damper().restitution ||
       scene.damping_ratio != wanted.damping_ratio)
@@ -216,7 +239,7 @@ Table components_table(const Figure& figure, const FigureRuns& runs) {
     const Component& component = components[p];
     const auto is_drawn = [&](const FigureCurve& curve) {
       const Scene& scene = runs.at(curve.run).run.scene;
-      return component.of(scene) != 0 || !has_components(scene);
+      return component.of(scene) != 0 || is_ideal(scene);
     };
     std::size_t count = 0;
     for (const FigureCurve& curve : figure.curves) {
@@ -229,7 +252,7 @@ Table components_table(const Figure& figure, const FigureRuns& runs) {
       for (std::vector<double>* values : {&losses.mean, &losses.low, &losses.high})
         for (std::size_t k = 0; k < values->size(); ++k) (*values)[k] *= bins.middles[k] / nu;
       const std::string number = std::to_string(p + 1) + "-" + std::to_string(++count);
-      const std::string legend = std::string(component.symbol) + " = " + number_text(component.of(scene));
+      const std::string legend = component.legend(scene);
       table.add({.name = "curve-" + number,
                  .notes = {"run " + curve.run},
                  .columns = {{"amplitude", of_middle, bins.middles},

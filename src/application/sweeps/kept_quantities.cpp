@@ -197,7 +197,7 @@ Number impact_energy_share(RunFindings& found, double) {
 
 using enum Dimension;
 using enum Better;
-constexpr std::array<Quantity, 16> quantities{{
+constexpr std::array<Quantity, 17> quantities{{
     {.name = "time_to_amplitude",
      .dimension = time,
      .meaning = "when the amplitude is first below A: that half cycle's peak; of a motion that creeps, the "
@@ -270,6 +270,15 @@ constexpr std::array<Quantity, 16> quantities{{
      .meaning = "its period in periods of the force; none if it is not periodic",
      .experiment = Experiment::steady,
      .value = one_of<&RunFindings::steady, &SteadyState::period>},
+    {.name = "transient_periods",
+     .dimension = count,
+     .meaning = "periods of the force from the release until that is known; none if it is not periodic",
+     .experiment = Experiment::steady,
+     .better = least,
+     .value = one_of<&RunFindings::steady,
+                     [](const SteadyState& steady) {
+                       return steady.period ? Number(steady.transient_periods) : std::nullopt;
+                     }>},
     {.name = "impacts_per_period",
      .dimension = ratio,
      .meaning = "its impacts in a period of the force",
