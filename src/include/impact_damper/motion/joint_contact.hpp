@@ -130,11 +130,8 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force, components>
 
   const Real& length() const { return length_; }
   Real rate() const { return Real(joint_radians) / length_; }
-  Displacement<Real> change(const Real& t) const {
-    const SeriesAt<Real> by = Departure<Real, joint_terms / 2>{x_}.at(t * over_h_);
-    const Real v0 = over_h_ * get(x_, 1), dv = over_h_ * by.u1;
-    return {get(x_, 0) + (v0 * t + by.u), v0 + dv, by.u, dv};
-  }
+  Displacement<Real> change(const Real& t) const { return change(x_, t); }
+  Displacement<Real> change(const Function& g, const Real& t) const { return change(g.terms, t); }
   State<Real> at(const Real& t) const {
     const Displacement<Real> now = change(t);
     return {now.x, now.v, Real(0), Real(0)};
@@ -223,7 +220,15 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force, components>
     for (std::size_t k = 1; k <= n; ++k) term *= h_ / Real(double(k));
     set(g.terms, n, get(g.terms, n) + term);
   }
-  // The `order`-th derivative of a function at the beginning, and a bound on it in the whole piece.
+  // The `order`-th derivative of a function at t, at the beginning, and a bound on it in the whole piece.
+  Real derivative(const Function& g, std::size_t order, const Real& t) const {
+    const Real s = t * over_h_;
+    Real value{0};
+    for (std::size_t n = joint_terms; n-- > order;)
+      value = value * s + Real(falling(n, order)) * get(g.terms, n);
+    for (std::size_t k = 0; k < order; ++k) value *= over_h_;
+    return value;
+  }
   Real begins(const Function& g, std::size_t order) const {
     Real value = get(g.terms, order);
     for (std::size_t k = 1; k <= order; ++k) value *= over_h_ * Real(double(k));
@@ -374,6 +379,11 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force, components>
       }
     }
   }
+  Displacement<Real> change(const Terms& terms, const Real& t) const {
+    const SeriesAt<Real> by = Departure<Real, joint_terms / 2>{terms}.at(t * over_h_);
+    const Real v0 = over_h_ * get(terms, 1), dv = over_h_ * by.u1;
+    return {get(terms, 0) + (v0 * t + by.u), v0 + dv, by.u, dv};
+  }
   // The sum of the sizes of the terms that make up h^2 x'' at the beginning, without the force.
   Real rounding_size() const {
     const std::size_t count = nu_.size();
@@ -381,6 +391,12 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force, components>
     for (std::size_t i = 0; i < count; ++i)
       size += nu_[i] * absolute(damping_[i] * q_[count + i] + spring_[i] * q_[i]);
     return size;
+  }
+  // n (n - 1) ... (n - order + 1)
+  static double falling(std::size_t n, std::size_t order) {
+    double product = 1;
+    for (std::size_t k = 0; k < order; ++k) product *= double(n - k);
+    return product;
   }
   static Real get(const Terms& terms, std::size_t n) { return terms[n / 2][n % 2]; }
   static void set(Terms& terms, std::size_t n, const Real& value) {
@@ -391,11 +407,8 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force, components>
   Real bound(const Terms& terms, std::size_t order) const {
     const Real end = length_ * over_h_;
     Real all{0};
-    for (std::size_t n = joint_terms; n-- > order;) {
-      Real factor{1};
-      for (std::size_t k = 0; k < order; ++k) factor *= Real(double(n - k));
-      all = all * end + factor * absolute(get(terms, n));
-    }
+    for (std::size_t n = joint_terms; n-- > order;)
+      all = all * end + Real(falling(n, order)) * absolute(get(terms, n));
     for (std::size_t k = 0; k < order; ++k) all *= over_h_;
     return all;
   }
