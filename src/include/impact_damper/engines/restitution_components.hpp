@@ -56,6 +56,7 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
       holds_.push_back(Real(damper.holding()));
       drag_.push_back(Real(damper.drag));
     }
+    forces_.weight = weight_;
   }
 
   Outcome run() {
@@ -124,7 +125,9 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
   // Begins the motion of all masses as they are now; it lasts until the next is begun.
   Motion& begin_motion() {
     if constexpr (in_fluid) {
-      forces_ = {{}, Real(0), weight_, held_mass_};
+      forces_.friction.clear();
+      forces_.others = 0;
+      forces_.held = held_mass_;
       fluid_.clear();
       number_in_fluid_.assign(masses_.size(), 0);
       for (std::size_t i = 0; i < masses_.size(); ++i) {
@@ -390,22 +393,17 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
                      Real(0)};
     Real before = v_, last = now.value - weight_;
     if (absolute(last) <= now.error + tiny * weight_) last = 0;
-    struct InFluid {
-      Real nu, drag, derivative;  // of w, one order below that of x
-    };
-    std::vector<InFluid> in_fluids;
-    for (std::size_t i = 0; in_fluid && i < masses_.size(); ++i)
-      if (!stays_[i] && drag_[i] > 0)
-        in_fluids.push_back(
-            {masses_.nu[i], drag_[i], -(now.value + friction_of(i) + drag_[i] * masses_.w(i))});
     for (int n = 3; n < 7 && now.later == 0; ++n) {
       amplitude *= forcing.frequency;
       Real sum = f1 - a2 * last - before, size = amplitude + a2 * absolute(last) + absolute(before);
-      for (InFluid& each : in_fluids) {
-        const Real force = each.drag * each.derivative;
-        sum += each.nu * force;
-        size += each.nu * absolute(force);
-        each.derivative = -force;  // as x^(n) is zero, if there is a next one
+      for (std::size_t i = 0; in_fluid && i < masses_.size(); ++i) {
+        if (stays_[i] || !is_in_fluid(i)) continue;
+        // d w^(n-2), if x''' to x^(n-1) are zero.
+        Real force = -(now.value + friction_of(i) + drag_[i] * masses_.w(i));
+        for (int k = 3; k < n; ++k) force *= -drag_[i];
+        force *= drag_[i];
+        sum += masses_.nu[i] * force;
+        size += masses_.nu[i] * absolute(force);
       }
       const bool is_zero = !(absolute(sum) > tiny * size);
       if (!is_zero) now.later = sum > 0 ? Real(1) : Real(-1);

@@ -220,15 +220,7 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force, components>
     for (std::size_t k = 1; k <= n; ++k) term *= h_ / Real(double(k));
     set(g.terms, n, get(g.terms, n) + term);
   }
-  // The `order`-th derivative of a function at t, at the beginning, and a bound on it in the whole piece.
-  Real derivative(const Function& g, std::size_t order, const Real& t) const {
-    const Real s = t * over_h_;
-    Real value{0};
-    for (std::size_t n = joint_terms; n-- > order;)
-      value = value * s + Real(falling(n, order)) * get(g.terms, n);
-    for (std::size_t k = 0; k < order; ++k) value *= over_h_;
-    return value;
-  }
+  // The `order`-th derivative of a function at the beginning, and a bound on it in the whole piece.
   Real begins(const Function& g, std::size_t order) const {
     Real value = get(g.terms, order);
     for (std::size_t k = 1; k <= order; ++k) value *= over_h_ * Real(double(k));
@@ -392,12 +384,6 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force, components>
       size += nu_[i] * absolute(damping_[i] * q_[count + i] + spring_[i] * q_[i]);
     return size;
   }
-  // n (n - 1) ... (n - order + 1)
-  static double falling(std::size_t n, std::size_t order) {
-    double product = 1;
-    for (std::size_t k = 0; k < order; ++k) product *= double(n - k);
-    return product;
-  }
   static Real get(const Terms& terms, std::size_t n) { return terms[n / 2][n % 2]; }
   static void set(Terms& terms, std::size_t n, const Real& value) {
     terms[n / 2] =
@@ -407,8 +393,11 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force, components>
   Real bound(const Terms& terms, std::size_t order) const {
     const Real end = length_ * over_h_;
     Real all{0};
-    for (std::size_t n = joint_terms; n-- > order;)
-      all = all * end + Real(falling(n, order)) * absolute(get(terms, n));
+    for (std::size_t n = joint_terms; n-- > order;) {
+      Real factor{1};
+      for (std::size_t k = 0; k < order; ++k) factor *= Real(double(n - k));
+      all = all * end + factor * absolute(get(terms, n));
+    }
     for (std::size_t k = 0; k < order; ++k) all *= over_h_;
     return all;
   }

@@ -25,8 +25,9 @@ class MotionInFluid {
     piece_.set_forces(forces);
     piece_.begin(time, x, v, fluid);
     number_ = its_number;
-    all_.assign(1, Part{piece_.of_x(Real(1), 0)});
-    for (std::size_t n = 0; n < fluid.size(); ++n) all_.push_back({piece_.of_mass(n, Real(-1), 0)});
+    all_.assign(1, Part{piece_.of_x(Real(1), 0), piece_.of_x(Real(1), 2)});
+    for (std::size_t n = 0; n < fluid.size(); ++n)
+      all_.push_back({piece_.of_mass(n, Real(-1), 0), piece_.of_mass(n, Real(-1), 2)});
   }
 
   const Piece& of_x() const { return piece_; }
@@ -43,7 +44,7 @@ class MotionInFluid {
   Real integral_of_ww(std::size_t i, const Real& t) const {
     return number_[i] == 0 ? Real(0) : piece_.integral_of_ww(number_[i] - 1, t);
   }
-  Real third() { return derivative(all_[0], 3, Real(0)); }
+  Real third() { return piece_.begins(all_[0].second, 1); }
   Real bound(std::size_t order, const Real&) { return bound(all_[0], order); }
   Real bound_of_mass(std::size_t i, std::size_t order, const Real&) { return bound(all_[number_[i]], order); }
 
@@ -52,16 +53,16 @@ class MotionInFluid {
 
  private:
   struct Part {
-    typename Piece::Function function;
+    typename Piece::Function function, second;  // second: its second derivative
     std::array<Real, 6> bounds{Real(-1), Real(-1), Real(-1), Real(-1), Real(-1), Real(-1)};
-    Real time{-1};  // of the displacement
+    Real time{-1};  // for which these hold:
     Displacement<Real> displacement{};
+    Jet<Real> jet{};  // of `second`
   };
-  Real derivative(const Part& part, std::size_t order, const Real& t) const {
-    return piece_.derivative(part.function, order, t);
-  }
   Real bound(Part& part, std::size_t order) {
-    if (part.bounds[order] < 0) part.bounds[order] = piece_.bound(part.function, order);
+    if (part.bounds[order] < 0)
+      part.bounds[order] =
+          order < 2 ? piece_.bound(part.function, order) : piece_.bound(part.second, order - 2);
     return part.bounds[order];
   }
 
@@ -73,24 +74,27 @@ class MotionInFluid {
 template <class Real, class Force>
 class MotionInFluid<Real, Force>::Now {
  public:
-  Now(MotionInFluid& motion, const Real& t, const Real&) : motion_(motion), t_(t) {}
-
   class One {
    public:
-    One(MotionInFluid& motion, Part& part, const Real& t) : motion_(motion), part_(part), t_(t) {}
-    const Displacement<Real>& displacement() {
-      if (part_.time != t_) part_.displacement = motion_.piece_.change(part_.function, t_);
-      part_.time = t_;
-      return part_.displacement;
+    One(MotionInFluid& motion, Part& part, const Real& t) : motion_(motion), part_(part) {
+      if (part.time == t) return;
+      part.time = t;
+      part.displacement = motion.piece_.change(part.function, t);
+      part.jet = motion.piece_.enclosure(part.second, t).whole;
     }
-    Real operator[](std::size_t order) const { return motion_.derivative(part_, order, t_); }
-    Real bound(std::size_t order) { return motion_.bound(part_, order); }
+    const Displacement<Real>& displacement() const { return part_.displacement; }
+    // order: 2, 3 or 4
+    const Real& operator[](std::size_t order) const {
+      return order == 2 ? part_.jet.g : order == 3 ? part_.jet.g1 : part_.jet.g2;
+    }
+    Real bound(std::size_t order) const { return motion_.bound(part_, order); }
 
    private:
     MotionInFluid& motion_;
     Part& part_;
-    Real t_;
   };
+
+  Now(MotionInFluid& motion, const Real& t, const Real&) : motion_(motion), t_(t) {}
   One of_x() { return {motion_, motion_.all_[0], t_}; }
   One of_mass(std::size_t i) { return {motion_, motion_.all_[motion_.number_[i]], t_}; }
 
