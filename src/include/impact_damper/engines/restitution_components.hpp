@@ -528,7 +528,7 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
     one.by_friction = phi > 0 ? Real((1 - r_2) / (1 - e * e * r_2)) : Real(0);
     return one;
   }
-  // Of the masses in joins_ joins as many as can, those that are over first before others.
+  // Of the masses in joins_ joins as many as can (M18.23), those that are over first before others.
   bool join_most(Motion& motion, const Real& side, const Joined& all) {
     chattering_.clear();
     for (std::size_t i = 0; i < masses_.size(); ++i)
