@@ -7,7 +7,11 @@
 #include <cstddef>
 #include <vector>
 
+#include "impact_damper/events/root_isolation.hpp"
 #include "impact_damper/motion/joint_contact.hpp"
+#include "impact_damper/motion/lead.hpp"
+#include "impact_damper/motion/state.hpp"
+#include "impact_damper/motion/system.hpp"
 
 namespace impact_damper {
 
