@@ -58,8 +58,6 @@ Scene scene_of(const std::string& kind, const std::string& engine, const Options
                std::uint64_t seed) {
   Scene scene = without_components(kind, engine == Restitution::name, options.several, seed);
   if (options.components) scene = with_components(scene, seed, kind == "round");
-  if (engine == Restitution::name)  // it has no drag
-    for (SceneDamper& damper : scene.dampers) damper.drag = 0;
   return engine == Cem::name ? within_steps(scene) : scene;
 }
 

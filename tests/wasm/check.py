@@ -426,15 +426,14 @@ class DamperToPlayWith(InABrowser):
         self.assertNotIn("loss factor", told)
 
     def test_friction_weight_and_drag_are_the_programs(self):
-        for engine, given in (("restitution", {"friction": 0.3, "weight": 0.1}), ("exact", {"drag": 0.2})):
+        for engine, given in (("restitution", {"friction": 0.3, "weight": 0.1}), ("restitution", {"drag": 0.2}), ("exact", {"drag": 0.2})):
             file = WORK / "rubbed.json"
             call(PROGRAM, "run", "--x0", "6", "--until-time", "2000", "--until-amplitude", "0.01", "--engine", engine, "--record", "half_cycles,impacts",
                  *(word for name, value in given.items() for word in (f"--{name}", str(value))), "-o", file)
             run = json.loads(file.read_text())
-            told = self.open("".join(f"{name}={value}&" for name, value in given.items()) + "engine=restitution")
+            told = self.open("".join(f"{name}={value}&" for name, value in given.items()) + f"engine={engine}")
             self.assertIn(f"to amplitude {run['half_cycles']['amplitude'][-1]:.3g}, {len(run['impacts']['time'])} impacts", told)
             self.assertEqual("held at rest up to amplitude 0.408" in told, "friction" in given)
-            self.assertEqual("with drag the walls are compliant" in told, engine == "exact")
 
     def test_what_is_not_valid_is_rejected_in_the_programs_words_and_the_decay_stays(self):
         before = self.open()

@@ -93,15 +93,6 @@ std::vector<Problem> incompatibilities_of(const Scene& scene, const Engine& engi
                                                    number_text(damper.y0)});
   }
   const Cem* const cem = std::get_if<Cem>(&engine);
-  for (const SceneField& field : scene_fields) {
-    if (!field.component || cem) continue;
-    if (!std::holds_alternative<Restitution>(engine) || !field.number.is(&SceneDamper::drag)) continue;
-    for (std::size_t i = 0; i < (field.number.of_damper ? scene.dampers.size() : 1); ++i)
-      if (const double value = SceneNumber{field.number, i}.in(scene); value != 0)
-        problems.push_back({one || field.number.own ? std::string(field.name) : damper_field(i, field.name),
-                            "must be 0 with the " + std::string(name_of(engine)) + " engine, got " +
-                                number_text(value) + ": the exact and cem engines have drag"});
-  }
   if (cem && cem->time_step) problems = problems_of(scene, *cem);
   for (std::size_t i = 0; i < scene.dampers.size(); ++i) {
     const SceneDamper& damper = scene.dampers[i];

@@ -22,8 +22,6 @@ const parameters = [
   { name: "weight", symbol: "γ", words: "weight", from: 0, to: 1, component: true },
   { name: "drag", symbol: "d", words: "drag", from: 0, to: 2, component: true },
 ];
-// Only compliant walls can have drag.
-const engineFor = (name, scene) => ("drag" in scene ? "exact" : name);
 
 const presets = [
   { words: "ν = 2 %, e = 0.6", mass_ratio: 0.02, restitution: 0.6 },
@@ -255,7 +253,7 @@ function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun
         // Of a forced motion there is no loss factor to measure: its amplitude does not fall by losses alone.
         const record = ["half_cycles", "impacts", "contacts", "history", ...(forced ? [] : ["loss"])];
         const simulated = scene();
-        const result = await simulate(simulated, { engine: engineFor(engine.value, simulated), record, history });
+        const result = await simulate(simulated, { engine: engine.value, record, history });
         problem.textContent = "";
         delete place.dataset.stale;
         motion = result;
@@ -307,7 +305,6 @@ function mountDamper(place, simulate, { parameters: given = {}, amplitude: begun
     summary.dataset.run = `${rounded(run.end_time / period)} periods to amplitude ${rounded(amplitude.at(-1) ?? 0)}, ${counted(run.impacts.time.length, "impact")}; ${words}`;
     const locking = lockingAmplitude(simulated);
     if (locking > 0) summary.dataset.run += `; held at rest up to amplitude ${rounded(locking)}`;
-    if (engineFor(engine.value, simulated) !== engine.value) summary.dataset.run += "; with drag the walls are compliant";
     place.removeAttribute("aria-busy");
   }
 

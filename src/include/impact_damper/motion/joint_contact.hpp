@@ -130,11 +130,8 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force, components>
 
   const Real& length() const { return length_; }
   Real rate() const { return Real(joint_radians) / length_; }
-  Displacement<Real> change(const Real& t) const {
-    const SeriesAt<Real> by = Departure<Real, joint_terms / 2>{x_}.at(t * over_h_);
-    const Real v0 = over_h_ * get(x_, 1), dv = over_h_ * by.u1;
-    return {get(x_, 0) + (v0 * t + by.u), v0 + dv, by.u, dv};
-  }
+  Displacement<Real> change(const Real& t) const { return change(x_, t); }
+  Displacement<Real> change(const Function& g, const Real& t) const { return change(g.terms, t); }
   State<Real> at(const Real& t) const {
     const Displacement<Real> now = change(t);
     return {now.x, now.v, Real(0), Real(0)};
@@ -373,6 +370,11 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force, components>
         next = q_[n * count + i] = now;
       }
     }
+  }
+  Displacement<Real> change(const Terms& terms, const Real& t) const {
+    const SeriesAt<Real> by = Departure<Real, joint_terms / 2>{terms}.at(t * over_h_);
+    const Real v0 = over_h_ * get(terms, 1), dv = over_h_ * by.u1;
+    return {get(terms, 0) + (v0 * t + by.u), v0 + dv, by.u, dv};
   }
   // The sum of the sizes of the terms that make up h^2 x'' at the beginning, without the force.
   Real rounding_size() const {

@@ -23,12 +23,52 @@ class ShiftedMotion : public WithoutContact<ShiftedMotion<Real, Force>, Real> {
 
   // The motion of x - rest.
   const ForcedMotion<Real, Force>& primary() const { return primary_; }
+  const ShiftedMotion& of_x() const { return *this; }
+  Real length() const { return primary_.length(); }
+  Real rate() const { return primary_.rate(); }
+  // How long bounds hold, of a time that is asked for.
+  const Real& span(const Real& asked) const { return asked; }
+  // x''' at the beginning, and bounds on derivatives of x - rest.
+  Real third() const { return primary_.beginning()[3]; }
+  Real bound(std::size_t order, const Real& span) const { return primary_.bound(order, span); }
+  Real bound_of_mass(std::size_t, std::size_t order, const Real& span) const { return bound(order, span); }
   Displacement<Real> displacement(const Real& t) const {
     Displacement<Real> now = primary_.at(t);
     // For a short time x must not take the rounding errors of `rest`, which may be much larger.
     if (rest_ != 0) now.x = t * primary_.rate() < 2 ? Real(x0_ + (v0_ * t + now.dx)) : Real(rest_ + now.x);
     return now;
   }
+  // The displacement that moves the i-th mass by (M18.8): that of x. Nothing resists by w, so no w^2 is asked
+  // for.
+  Displacement<Real> of_mass(std::size_t, const Real&, const Displacement<Real>& x_now) const {
+    return x_now;
+  }
+  Real integral_of_ww(std::size_t, const Real&) const { return Real(0); }
+
+  // x at one instant, what moves each mass, which is x as well, and bounds on its derivatives, each made when
+  // it is first asked for.
+  class Now {
+   public:
+    Now(const ShiftedMotion& motion, const Real& t, const Real& span)
+        : displacement_(motion.primary_.at(t)),
+          x_(motion.primary_.template instant<7>(displacement_.x, displacement_.v, t)),
+          span_(span) {}
+    Now& of_x() { return *this; }
+    Now& of_mass(std::size_t) { return *this; }
+    const Displacement<Real>& displacement() const { return displacement_; }  // of x - rest
+    const Real& operator[](std::size_t order) const { return x_[order]; }
+    const Real& bound(std::size_t order) {
+      if (bounds_[order] < 0) bounds_[order] = x_.bound(order, span_);
+      return bounds_[order];
+    }
+
+   private:
+    Displacement<Real> displacement_;
+    Instant<Real, 7, Force> x_;
+    Real span_;
+    std::array<Real, 6> bounds_{Real(-1), Real(-1), Real(-1), Real(-1), Real(-1), Real(-1)};
+  };
+
   // y and y' are 0: each secondary mass has its own.
   State<Real> at(const Real& t) const {
     const Displacement<Real> now = displacement(t);
