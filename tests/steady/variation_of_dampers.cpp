@@ -258,17 +258,15 @@ TEST_CASE(
 }
 
 TEST_CASE("the derivative with friction and weight agrees with differences in extended precision") {
-  const Counts counts = compare_derivatives(Restitution{}, 120, Components::friction_and_weight);
-  CHECK(counts.columns > 600);
-  CHECK(counts.by_force > 120);
-  CHECK(counts.at_end > 60);
+  const Counts counts = compare_derivatives(Restitution{}, 60, Components::friction_and_weight);
+  CHECK(counts.columns > 400);
+  CHECK(counts.by_force > 100);
+  CHECK(counts.at_end > 50);
   CHECK(counts.impacts > 300);
   CHECK(counts.stops > 100);
   CHECK(counts.reversals > 30);
-  CHECK(counts.releases > 60);
-  CHECK(counts.jumping_releases > 30);
-  MESSAGE(counts.columns, " ", counts.by_force, " ", counts.at_end, " ", counts.impacts, " ", counts.stops, " ",
-          counts.reversals, " ", counts.releases, " ", counts.jumping_releases);
+  CHECK(counts.releases > 40);
+  CHECK(counts.jumping_releases > 20);
 }
 
 TEST_CASE("a list of one damper has the exponents of the scene without a list") {

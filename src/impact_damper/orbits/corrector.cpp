@@ -119,8 +119,7 @@ std::optional<Point> newton_step(const Equation& equation, const Solution& at, c
   std::vector<double> missing;
   for (const double r : residual.state) missing.push_back(-r);
   missing.push_back(-residual.off_plane);
-  for (const std::size_t damper : equation.free_to_rest(at.image))
-    missing[equation.row_of_rest(damper)] = 0;
+  for (const std::size_t damper : equation.free_to_rest(at.image)) missing[equation.row_of_rest(damper)] = 0;
   const auto change = solution(bordered(equation, at.image, at.plane.normal), missing);
   if (!change) return {};
   Point next = point_at(vector_of(at.image.state), at.point.back() + change->back());

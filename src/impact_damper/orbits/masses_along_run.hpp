@@ -75,7 +75,7 @@ class MassesAlongRun {
     // wall (M17.3).
     bool meets = false, joins = false, is_active = false;
     // With friction: the sign of y' with which it acts, 0 where the mass does not slide, and the same before
-    // the last event. With friction or weight: whether the mass joined with the change of y, too (M18.25).
+    // the last event. With friction or weight: whether the mass joined with the change of y, too (M13.24).
     double slides = 0, slides_before = 0;
     bool joins_place = false;
   };

@@ -265,7 +265,7 @@ class RigidSaltation {
   ChangeOfState shifted_;
 };
 
-// The saltation matrix of an event of a run with friction or weight (18.9).
+// The saltation matrix of an event of a run with friction or weight (13.11).
 class SettledSaltation {
  public:
   // Both must outlive this object.
@@ -335,6 +335,7 @@ class SettledSaltation {
     for (const MotionChain::Impact& impact : now_.impacts)
       conditions_.push_back({index_of_y(std::size_t(impact.damper)), impact.w});
     if (!conditions_.empty()) return;
+    // Stops (M13.29), (M13.30).
     for (std::size_t i = 0; i < now_.masses.size(); ++i) {
       const MassesAlongRun::Mass& mass = now_.masses[i];
       const bool stops = mass.slides_before != 0 && (mass.wall != 0 || mass.slides == -mass.slides_before);
@@ -350,7 +351,7 @@ class SettledSaltation {
       if (!(stop_margin && *stop_margin <= margin)) stop_margin = margin;
     }
     if (!conditions_.empty()) return;
-    // The rates jump at a release only where phi_s > phi.
+    // Releases (M13.31), at which the rates jump only where phi_s > phi (M13.32).
     const double damping = 2 * of_.zeta;
     const double rate = of_.force.amplitude * of_.force.frequency * of_.force.phase(time).cos -
                         damping * rates_before_[1] - rates_before_[0];
@@ -361,7 +362,7 @@ class SettledSaltation {
         conditions_.push_back({0, rate, damping});
     }
   }
-  // Multiplies a change by the derivative D of the jump, (M13.23) and (M18.25).
+  // Multiplies a change by the derivative D of the jump, (M13.23) and (M13.24).
   void jump(ChangeOfState& s) const {
     double gained = 0, x = 0, v = 0;
     for (std::size_t i = 0; i < gain_.size(); ++i) gained += gain_[i] * s[index_of_w(i)];
