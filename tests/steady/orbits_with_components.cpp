@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -33,7 +34,7 @@ std::complex<double> multiplier_of_locked(const Scene& scene) {
 }
 
 // The mass slides, stops, is let go and meets its walls.
-Scene sliding(double static_friction, double weight) {
+Scene sliding(double static_friction, double weight, double friction = 0.15) {
   return {.damping_ratio = 0.05,
           .x0 = 1,
           .force_amplitude = 0.25,
@@ -42,7 +43,7 @@ Scene sliding(double static_friction, double weight) {
           .dampers = {{.mass_ratio = 0.1,
                        .restitution = 0.5,
                        .y0 = 0.3,
-                       .friction = 0.15,
+                       .friction = friction,
                        .static_friction = static_friction}}};
 }
 
@@ -93,15 +94,17 @@ TEST_CASE("a mass that friction holds has the multipliers of an oscillator of th
 }
 
 TEST_CASE("multipliers with friction and weight are those of differences of plain runs") {
-  int stops = 0, compared = 0, jumps = 0, by_weight = 0;
-  for (const double static_friction : {0.0, 0.25}) {
+  int stops = 0, compared = 0, jumps = 0, by_weight = 0, held = 0;
+  for (const auto& [friction, static_friction] :
+       std::vector<std::array<double, 2>>{{0.15, 0}, {0.15, 0.25}, {0.5, 0}, {0.5, 0.7}}) {
     for (const double weight : {0.0, 0.06}) {
       for (const double frequency : {0.8, 0.95, 1.1}) {
-        Scene scene = sliding(static_friction, weight);
+        Scene scene = sliding(static_friction, weight, friction);
         scene.force_frequency = frequency;
-        CAPTURE(static_friction);
-        CAPTURE(weight);
-        CAPTURE(frequency);
+        CAPTURE(scene.damper().friction);
+        CAPTURE(scene.damper().static_friction);
+        CAPTURE(scene.weight);
+        CAPTURE(scene.force_frequency);
         const SteadyState steady = ForcedScene(scene, Restitution{}).settle(release_of(scene), {});
         if (!steady.period) continue;
         const auto orbit = find_orbit(scene, Restitution{}, int(*steady.period), steady.state);
@@ -128,16 +131,19 @@ TEST_CASE("multipliers with friction and weight are those of differences of plai
         const Multipliers expected = multipliers_of(differences);
         CHECK(orbit->multipliers[0].modulus() == doctest::Approx(expected[0].modulus()).epsilon(1e-5));
         ++compared;
+        const RecordedRun run = ForcedScene(scene, Restitution{}).record(start, map.duration());
+        held += int(std::ranges::count(run.chain.settled, true, &MotionChain::Settled::held));
         stops += image.stop_margin.has_value();
         jumps += image.stop_margin.has_value() && static_friction > 0;
         by_weight += weight > 0;
       }
     }
   }
-  CHECK(compared >= 6);
-  CHECK(stops >= 4);
-  CHECK(jumps >= 2);
-  CHECK(by_weight >= 2);
+  CHECK(compared >= 12);
+  CHECK(stops >= 12);
+  CHECK(jumps >= 6);
+  CHECK(by_weight >= 6);
+  CHECK(held >= 10);
 }
 
 TEST_CASE("a branch of orbits with friction is followed, with the amplitudes of steady states") {
