@@ -1,5 +1,6 @@
 #include "impact_damper/engines/restitution.hpp"
 
+#include "impact_damper/engines/restitution_components.hpp"
 #include "impact_damper/engines/restitution_dampers.hpp"
 #include "observed.hpp"
 
@@ -14,8 +15,10 @@ template Outcome observed(const Scene&, const Restitution&, TestObserver<double>
 template Outcome observed(const Scene&, const Restitution&, TestObserver<long double>&);
 
 Outcome observed_list(const Scene& scene, const Restitution& options, TestObserver<long double>& observer) {
-  return with_system<long double>(
-      scene, [&](const auto& system) { return run_restitution_dampers(system, scene, options, observer); });
+  return with_system<long double>(scene, [&](const auto& system) {
+    return has_components(scene) ? run_restitution_with_components(system, scene, options, observer)
+                                 : run_restitution_dampers(system, scene, options, observer);
+  });
 }
 
 }  // namespace impact_damper

@@ -32,6 +32,9 @@ struct LastState : TestObserver<long double> {
     sequence.push_back(2 * damper + (wall == Wall::left));
   }
   void contact(double, double, Wall, std::int32_t damper) override { sequence.push_back(-1 - damper); }
+  void settled(std::int32_t, const PlaceInCavity&, bool held, double slides) override {
+    sequence.push_back(held ? 1000 : 1001 + int(slides));
+  }
   void sample(double, double x, double v, std::span<const PlaceInCavity> places) override {
     end = {x, v};
     for (const PlaceInCavity& each : places) end.push_back(each.y), end.push_back(each.w);
@@ -110,7 +113,9 @@ std::vector<ChangeOfState> derivative(const Scene& scene, const Engine& engine) 
 
 double coarse(double x) { return std::round(x * 0x1p20) * 0x1p-20; }
 
-Scene random_scene(std::uint64_t seed, bool rigid) {
+enum class Components { none, friction_and_weight };
+
+Scene random_scene(std::uint64_t seed, bool rigid, Components components = Components::none) {
   reference::Random random(seed);
   Scene scene;
   scene.damping_ratio = random.chance(0.3) ? 0 : random.log_uniform(1e-3, 1);
@@ -120,7 +125,8 @@ Scene random_scene(std::uint64_t seed, bool rigid) {
   scene.v0 = coarse(random.uniform(-2, 2));
   scene.until_time = random.uniform(1, 8);
   scene.dampers.clear();
-  for (int i = 0; i < 2 + int(seed % 3); ++i) {
+  const bool some = components != Components::none;
+  for (int i = 0; i < (some ? 1 : 2) + int(seed % 3); ++i) {
     SceneDamper damper;
     damper.mass_ratio = random.log_uniform(1e-3, 1);
     damper.restitution = random.uniform(0.1, 0.9);
@@ -132,6 +138,13 @@ Scene random_scene(std::uint64_t seed, bool rigid) {
   }
   // At rest on a wall, where it may stick; or in it.
   if (random.chance(0.3)) scene.dampers[0].y0 = rigid ? 0 : -0.01, scene.dampers[0].w0 = 0;
+  if (!some) return scene;
+  scene.weight = random.chance(0.4) ? 0 : random.log_uniform(0.02, 2);
+  for (SceneDamper& damper : scene.dampers) {
+    damper.friction = random.chance(0.2) ? 0 : random.log_uniform(0.02, 1);
+    if (random.chance(0.6)) damper.static_friction = damper.friction * random.uniform(1, 2);
+    if (random.chance(0.2)) damper.w0 = 0;
+  }
   return scene;
 }
 
@@ -145,12 +158,14 @@ double largest(const std::vector<ChangeOfState>& columns) {
 struct Counts {
   int columns = 0, by_force = 0, at_end = 0, impacts = 0, held = 0, held_at_first = 0, kicked_off = 0,
       together = 0;
+  int stops = 0, reversals = 0, releases = 0, jumping_releases = 0;  // with friction
 };
-Counts compare_derivatives(const Engine& engine, std::uint64_t seeds) {
+Counts compare_derivatives(const Engine& engine, std::uint64_t seeds,
+                           Components components = Components::none) {
   Counts counts;
   double worst = 0;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    const Scene scene = random_scene(seed, has_rigid_walls(engine));
+    const Scene scene = random_scene(seed, has_rigid_walls(engine), components);
     const std::vector<ChangeOfState> found = derivative(scene, engine);
     const double scale = largest(found);
     int columns = 0;
@@ -170,6 +185,20 @@ Counts compare_derivatives(const Engine& engine, std::uint64_t seeds) {
     }
     counts.columns += columns;
     if (columns == 0) continue;
+    const RecordedRun recorded = ForcedScene(scene, engine).record(release_of(scene), *scene.until_time);
+    std::vector<const MotionChain::Settled*> before(scene.dampers.size());
+    for (const MotionChain::Settled& now : recorded.chain.settled) {
+      const auto*& last = before[std::size_t(now.damper)];
+      const SceneDamper& damper = scene.dampers[std::size_t(now.damper)];
+      if (last && now.motions > last->motions) {
+        counts.stops += last->slides != 0 && now.held;
+        counts.reversals += now.place.w == 0 && now.slides * last->slides < 0;
+        counts.releases += last->held && !now.held && now.place.w == 0;
+        counts.jumping_releases +=
+            last->held && !now.held && now.place.w == 0 && damper.holding() > damper.friction;
+      }
+      last = &now;
+    }
     const Run run = simulate(scene, engine, {.half_cycles = false, .impacts = true, .contacts = true});
     counts.impacts += int(run.impacts->time.size());
     const Contacts& contacts = *run.contacts;
@@ -226,6 +255,18 @@ TEST_CASE(
   CHECK(counts.at_end > 30);
   CHECK(counts.held_at_first > 3);
   CHECK(counts.together > 100);
+}
+
+TEST_CASE("the derivative with friction and weight agrees with differences in extended precision") {
+  const Counts counts = compare_derivatives(Restitution{}, 60, Components::friction_and_weight);
+  CHECK(counts.columns > 400);
+  CHECK(counts.by_force > 100);
+  CHECK(counts.at_end > 50);
+  CHECK(counts.impacts > 300);
+  CHECK(counts.stops > 100);
+  CHECK(counts.reversals > 30);
+  CHECK(counts.releases > 40);
+  CHECK(counts.jumping_releases > 20);
 }
 
 TEST_CASE("a list of one damper has the exponents of the scene without a list") {

@@ -27,12 +27,15 @@ extern template Outcome run_exact_dampers<double>(const Checked&, Recorder&);
 extern template Outcome run_exact_dampers(const ForcedSystem&, const Scene&, const Exact&, Recorder&,
                                           const ModesOfDampers<double, Forcing<double>>&);
 extern template Outcome run_exact_with_components<double>(const Checked&, Recorder&);
+extern template Outcome run_exact_with_components(const ForcedSystem&, const Scene&, const Exact&, Recorder&);
 extern template Outcome run_restitution(const FreeSystem&, const Scene&, const Restitution&, Recorder&);
 extern template Outcome run_restitution(const ForcedSystem&, const Scene&, const Restitution&, Recorder&);
 extern template Outcome run_restitution_dampers<double>(const Checked&, Recorder&);
 extern template Outcome run_restitution_dampers(const ForcedSystem&, const Scene&, const Restitution&,
                                                 Recorder&);
 extern template Outcome run_restitution_with_components<double>(const Checked&, Recorder&);
+extern template Outcome run_restitution_with_components(const ForcedSystem&, const Scene&, const Restitution&,
+                                                        Recorder&);
 extern template Outcome run_cem<double>(const Checked&, Recorder&);
 extern template Outcome run_cem_dampers<double>(const Checked&, Recorder&);
 

@@ -3,5 +3,6 @@
 namespace impact_damper {
 
 template Outcome run_exact_with_components<double>(const Checked&, Recorder&);
+template Outcome run_exact_with_components(const ForcedSystem&, const Scene&, const Exact&, Recorder&);
 
 }  // namespace impact_damper

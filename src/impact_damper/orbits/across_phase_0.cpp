@@ -18,7 +18,7 @@ struct Step {
 // The numbers of one damper and its cavity.
 struct Cavity {
   std::size_t damper;
-  double mass_ratio, restitution, clearance, wall_damping;
+  double mass_ratio, restitution, clearance, friction, wall_damping;
 
   bool contains(double y) const { return y >= 0 && y <= clearance; }
   double nearer_wall(double y) const { return y < clearance / 2 ? 0 : clearance; }
@@ -28,14 +28,14 @@ std::vector<Cavity> cavities_of(const Scene& scene, const Engine& engine) {
   const auto* const exact = std::get_if<Exact>(&engine);
   for (const SceneDamper& each : scene.dampers) {
     const double damping = exact ? 2 * zeta_m<double>(each, exact->calibration) * omega_m(each) : 0;
-    all.push_back({all.size(), each.mass_ratio, each.restitution, each.clearance, damping});
+    all.push_back({all.size(), each.mass_ratio, each.restitution, each.clearance, each.friction, damping});
   }
   return all;
 }
 
 // Takes a mass that lies beyond a rigid wall across its impact (M13.13), or back if it moves away from the
 // wall. All others fly. Nothing if it has no speed, or an impact with e = 0 would have to be undone.
-std::optional<Step> across_impact(double zeta, const Cavity& cavity, const StateVector& s) {
+std::optional<Step> across_impact(const Scene& scene, const Cavity& cavity, const StateVector& s) {
   const std::size_t y = index_of_y(cavity.damper), w = index_of_w(cavity.damper);
   const double wall = s[y] < 0 ? 0 : cavity.clearance, away = s[y] < 0 ? 1 : -1, e = cavity.restitution;
   const bool approaching = away * s[w] < 0;
@@ -48,9 +48,17 @@ std::optional<Step> across_impact(double zeta, const Cavity& cavity, const State
   for (std::size_t i = 3; i < s.size(); i += 2) jump[i][w] = -gained;
   jump[w][w] = approaching ? -e : -1 / e;
   const auto rates = [&](const StateVector& at) {
-    const double a = -2 * zeta * at[1] - at[0];  // the force is 0 at phase 0
+    double a = -2 * scene.damping_ratio * at[1] - at[0];  // the force is 0 at phase 0
+    std::vector<double> pulls;
+    for (std::size_t i = 0; i < scene.dampers.size(); ++i) {
+      const double its_w = at[index_of_w(i)];
+      const double friction = scene.dampers[i].friction * (its_w > 0 ? 1 : its_w < 0 ? -1 : 0);
+      a += scene.dampers[i].mass_ratio * friction;
+      pulls.push_back(friction + scene.weight);
+    }
     StateVector all{at[1], a};
-    for (std::size_t i = 2; i < at.size(); i += 2) all.insert(all.end(), {at[i + 1], -a});
+    for (std::size_t i = 0; i < pulls.size(); ++i)
+      all.insert(all.end(), {at[index_of_w(i)], -(a + pulls[i])});
     return all;
   };
   const auto moved = [](StateVector from, const StateVector& by, double time) {
@@ -107,8 +115,9 @@ std::optional<Crossing> across_phase_0(const Scene& scene, const Engine& engine,
   for (const Cavity& cavity : cavities) {
     double &y = all.state[index_of_y(cavity.damper)], &w = all.state[index_of_w(cavity.damper)];
     const double wall = cavity.nearer_wall(y);
-    if (!(std::fabs(y - wall) < rounding && std::fabs(w) < rounding)) continue;
-    y = wall;
+    const bool on_wall = std::fabs(y - wall) < rounding;
+    if (!(std::fabs(w) < rounding && (on_wall || cavity.friction > 0))) continue;
+    if (on_wall) y = wall;
     w = 0;
     some_rest = true;
   }
@@ -118,7 +127,7 @@ std::optional<Crossing> across_phase_0(const Scene& scene, const Engine& engine,
     });
     if (beyond == cavities.end()) return all;
     std::optional<Step> step;
-    if (!some_rest) step = across_impact(scene.damping_ratio, *beyond, all.state);
+    if (!some_rest) step = across_impact(scene, *beyond, all.state);
     if (!step) return {};
     take(std::move(*step));
   }

@@ -46,9 +46,9 @@ class BranchSearch {
     }
     SceneState centred = s;
     for (std::size_t i = 0; i < s.dampers.size(); ++i)
-      if (watched->by_damper[i] == ImpactCounts{})
+      if (watched->by_damper[i] == ImpactCounts{} && !has_components(scene))
         centred.dampers[i] = {scene.dampers[i].clearance / 2 - s.x, -s.v};
-    if (watched->impacts == ImpactCounts{}) {
+    if (watched->impacts == ImpactCounts{} && has_mirror(scene)) {
       motion.orbit = find_orbit(scene, engine_, 1, centred, {.symmetric = true});
     } else if (has_one_damper(scene)) {
       motion.orbit = find_orbit(scene, engine_, periods, s);
@@ -132,11 +132,12 @@ class BranchSearch {
  private:
   // Whether a state is one of the orbit at phase 0, or of its mirror image, to within `gap` of its size.
   bool is_twin(const Orbit& orbit, const SceneState& state, double gap) const {
-    const PoincareMap half(orbit.scene, engine_, 1);
+    const int half_periods = has_mirror(orbit.scene) ? 1 : 2;
+    const PoincareMap map(orbit.scene, engine_, half_periods);
     SceneState s = release_of(orbit.scene);
-    for (int n = 0; n < 2 * orbit.periods; ++n) {
+    for (int n = 0; n < 2 * orbit.periods; n += half_periods) {
       if (distance(s, state) <= gap * size_of(state)) return true;
-      const auto image = half(s);
+      const auto image = map(s, PoincareMap::Derivatives::none);
       if (!image) return false;
       s = image->state;
     }
@@ -202,7 +203,7 @@ Branches find_branches(const Scene& scene, const Engine& engine, const Parameter
   const BranchSearch search(engine, range, rule);
   for (const double value : {range.from, range.to})
     for (const SceneState& start : starts)
-      require_none(problems_of(search.at(released_from(scene, start), value), engine));
+      require_none(problems_of_derivatives(search.at(released_from(scene, start), value), engine));
 
   Branches all;
   progress(0);

@@ -87,6 +87,16 @@ Matrix derivative_of_moving(const PoincareImage& image) {
   return all;
 }
 
+// Sets y and y' of idle dampers in a change of the state so that they stay where they rest: in space or,
+// where friction holds them, in their cavities.
+void keep_at_rest(const PoincareImage& image, const Scene& scene, StateVector& change) {
+  const bool held = has_components(scene);
+  for (const std::size_t damper : image.idle) {
+    change[index_of_y(damper)] = held ? 0 : -change[0];
+    change[index_of_w(damper)] = held ? 0 : -change[1];
+  }
+}
+
 // The residual of an iterate.
 struct Residual {
   StateVector state;     // H^n(s) - s
@@ -109,7 +119,7 @@ std::optional<Point> newton_step(const Equation& equation, const Solution& at, c
   std::vector<double> missing;
   for (const double r : residual.state) missing.push_back(-r);
   missing.push_back(-residual.off_plane);
-  for (const std::size_t damper : equation.free_to_rest(at.image)) missing[index_of_w(damper)] = 0;
+  for (const std::size_t damper : equation.free_to_rest(at.image)) missing[equation.row_of_rest(damper)] = 0;
   const auto change = solution(bordered(equation, at.image, at.plane.normal), missing);
   if (!change) return {};
   Point next = point_at(vector_of(at.image.state), at.point.back() + change->back());
@@ -123,7 +133,8 @@ std::optional<Point> newton_step(const Equation& equation, const Solution& at, c
 }  // namespace
 
 // In whole periods an idle damper keeps y + x and y' + x', and its row of w is redundant. (M13.28) takes the
-// place of that row: y + x does not change.
+// place of that row: y + x does not change. Where friction holds it, it keeps y, and its row of y is zero: in
+// its place y does not change.
 Matrix bordered(const Equation& equation, const PoincareImage& image, const Point& last) {
   const std::size_t n = image.by_state.size();
   Matrix a = image.by_state;
@@ -132,9 +143,10 @@ Matrix bordered(const Equation& equation, const PoincareImage& image, const Poin
     a[i].push_back(by_parameter(image, equation.parameter)[i]);
   }
   for (const std::size_t damper : equation.free_to_rest(image)) {
-    std::vector<double>& row = a[index_of_w(damper)];
+    std::vector<double>& row = a[equation.row_of_rest(damper)];
     std::fill(row.begin(), row.end(), 0.0);
-    row[0] = row[index_of_y(damper)] = 1;
+    row[0] = has_components(equation.scene) ? 0 : 1;
+    row[index_of_y(damper)] = 1;
   }
   a.push_back(last);
   return a;
@@ -179,7 +191,9 @@ Solved solve(const Equation& equation, const Point& before, const Point& start, 
     now.plane = best.plane;
   }
   if (!(least <= equation.options.tolerance)) return NoOrbit{OrbitEnd::no_convergence, std::move(residuals)};
-  if (best.image.one_sided) return NoOrbit{OrbitEnd::no_derivative, std::move(residuals)};
+  // At a stop so near to no stop, or to the edge of its band, the orbit is known to be on neither side.
+  const bool on_edge = best.image.stop_margin && *best.image.stop_margin <= equation.options.tolerance;
+  if (best.image.one_sided || on_edge) return NoOrbit{OrbitEnd::no_derivative, std::move(residuals)};
   best.multipliers = multipliers_of(best.image);
   best.residuals = std::move(residuals);
   return best;
@@ -188,16 +202,14 @@ Solved solve(const Equation& equation, const Point& before, const Point& start, 
 Plane at_value(const Point& p) { return {p, point_at(StateVector(p.size() - 1), 1)}; }
 
 std::optional<StateVector> residual_after(const Equation& equation, const Point& p, int half_periods) {
+  if (half_periods % 2 != 0 && !has_mirror(equation.scene)) return {};
   Equation shorter = equation;
   shorter.half_periods = half_periods;
   const auto image = shorter.image_of(p, PoincareMap::Derivatives::none);
   if (!image) return {};
   StateVector residual = vector_of(image->state);
   for (std::size_t i = 0; i < residual.size(); ++i) residual[i] -= p[i];
-  for (const std::size_t damper : image->idle) {
-    residual[index_of_y(damper)] = -residual[0];
-    residual[index_of_w(damper)] = -residual[1];
-  }
+  keep_at_rest(*image, equation.scene, residual);
   return residual;
 }
 Orbit orbit_of(const Equation& equation, const Solution& found, int periods, bool symmetric) {
@@ -215,6 +227,7 @@ Orbit orbit_of(const Equation& equation, const Solution& found, int periods, boo
   orbit.multipliers = found.multipliers;
   orbit.slowest_impact = found.image.slowest_impact;
   orbit.nearest_miss = found.image.nearest_miss;
+  orbit.stop_margin = found.image.stop_margin;
   orbit.least_interval = found.image.least_interval;
   if (!symmetric) return orbit;
 
@@ -233,7 +246,7 @@ Orbit orbit_of(const Equation& equation, const Solution& found, int periods, boo
   return orbit;
 }
 
-std::optional<StateVector> eigenvector_of_minus_1(const PoincareImage& image) {
+std::optional<StateVector> eigenvector_of_minus_1(const PoincareImage& image, const Scene& scene) {
   StateMatrix a = derivative_of_moving(image);
   constexpr double shift = 1e-9;  // so that the matrix is not singular
   for (std::size_t i = 0; i < a.size(); ++i) a[i][i] += 1 + shift;
@@ -247,10 +260,7 @@ std::optional<StateVector> eigenvector_of_minus_1(const PoincareImage& image) {
   StateVector whole(image.by_state.size());
   const std::vector<std::size_t> moving = moving_in(image);
   for (std::size_t i = 0; i < moving.size(); ++i) whole[moving[i]] = v[i];
-  for (const std::size_t damper : image.idle) {
-    whole[index_of_y(damper)] = -whole[0];
-    whole[index_of_w(damper)] = -whole[1];
-  }
+  keep_at_rest(image, scene, whole);
   return normalized(whole);
 }
 

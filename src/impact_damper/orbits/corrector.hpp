@@ -12,6 +12,7 @@
 #include "impact_damper/math/dense.hpp"
 #include "impact_damper/orbits/orbits.hpp"
 #include "impact_damper/orbits/poincare_map.hpp"
+#include "impact_damper/orbits/variational_equations.hpp"
 #include "impact_damper/scene.hpp"
 
 namespace impact_damper::corrector {
@@ -44,6 +45,10 @@ struct Equation {
   std::vector<std::size_t> free_to_rest(const PoincareImage& image) const {
     return half_periods % 2 == 0 ? image.idle : std::vector<std::size_t>{};
   }
+  // The row of the bordered matrix in which that stands.
+  std::size_t row_of_rest(std::size_t damper) const {
+    return has_components(scene) ? index_of_y(damper) : index_of_w(damper);
+  }
   // Returns H^n(s; p), or the budget that ended the run before. The nearest miss is looked for only where the
   // residual is at most twice the tolerance, as on an orbit.
   Expected<PoincareImage, StopReason> image_of(const Point& p, PoincareMap::Derivatives wanted) const {
@@ -75,9 +80,9 @@ struct Crossing {
 // `before`, a state of the branch; both have as many numbers as the scene's state. The engine is exact or
 // restitution.
 //   Rigid walls: each mass of s that lies beyond a wall is taken across its impact, forwards if it moves into
-//   the wall, else backwards. y and y' of a mass that rests on a wall to within rounding become exact.
-//   Returns nothing where an impact with e = 0 would have to be undone, and where an impact has to be crossed
-//   while a mass of s rests on a wall.
+//   the wall, else backwards. y and y' of a mass that rests on a wall, or where friction holds it, to within
+//   rounding become exact. Returns nothing where an impact with e = 0 would have to be undone, and where an
+//   impact has to be crossed while a mass of s rests.
 //   Compliant walls: each mass that is in contact in one of s and `before` and not in the other is taken
 //   across the touch, or the end of the contact.
 std::optional<Crossing> across_phase_0(const Scene& scene, const Engine& engine, const StateVector& before,
@@ -110,17 +115,17 @@ using Solved = Expected<Solution, NoOrbit>;
 Solved solve(const Equation& equation, const Point& before, const Point& start, const Plane& plane);
 
 // The bordered matrix of (M13.11): the derivative of H^n(s; p) - s by s and the parameter, and `last` as the
-// last row. In the row of w of each damper of free_to_rest() stands (M13.28).
+// last row. In row_of_rest() of each damper of free_to_rest() stands (M13.28).
 Matrix bordered(const Equation& equation, const PoincareImage& image, const Point& last);
 
 // The residual H^m(s) - s, m = half_periods, in which idle dampers count as staying where they rest; nothing
-// if a budget ends the run before.
+// if a budget ends the run before, or H^m does not exist as m is odd and the scene has weight.
 std::optional<StateVector> residual_after(const Equation& equation, const Point& p, int half_periods);
 
 Multipliers multipliers_of(const PoincareImage& image);  // without those of idle dampers
 // The unit eigenvector of A for its eigenvalue next to -1, by inverse iteration; nothing if that fails. Idle
-// dampers stay where they rest: their y + x and y' + x' in it are 0.
-std::optional<StateVector> eigenvector_of_minus_1(const PoincareImage& image);
+// dampers stay where they rest: their y + x and y' + x' in it are 0, or y and y' where friction holds them.
+std::optional<StateVector> eigenvector_of_minus_1(const PoincareImage& image, const Scene& scene);
 
 // The orbit of a solution. Of a symmetric one the solution is half, and its mirror image the other half.
 Orbit orbit_of(const Equation& equation, const Solution& found, int periods, bool symmetric);

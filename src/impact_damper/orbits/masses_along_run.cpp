@@ -60,6 +60,15 @@ double MassesAlongRun::joined_mass() const {
   return all;
 }
 
+double MassesAlongRun::acceleration(double time) const {
+  double force = of_.force.amplitude * of_.force.phase(time).sin - 2 * of_.zeta * v - x;
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    const VariationalCoefficients::OfDamper& its = of_.dampers[i];
+    force += its.nu * (masses[i].wall == 0 ? its.friction * masses[i].slides : -of_.weight);
+  }
+  return force / joined_mass();
+}
+
 void MassesAlongRun::come_to(std::size_t n) {
   continued = n > 0;
   const auto& all = run_.chain.impacts;
@@ -115,7 +124,7 @@ void MassesAlongRun::find_active() {
     at_walls_.push_back({i, its.nu, its.e, impact.w < 0 ? 1.0 : -1.0, -std::fabs(impact.w)});
   }
   for (std::size_t i = 0; i < masses.size(); ++i)
-    if (masses[i].wall != 0)
+    if (masses[i].wall != 0 && masses[i].wall != held_by_friction)
       at_walls_.push_back({i, of_.dampers[i].nu, of_.dampers[i].e, double(masses[i].wall), 0.0});
   const double jump = jump_of_velocity<double>(std::span(at_walls_));
   for (const MassAtWall<double>& each : at_walls_) {
@@ -148,6 +157,54 @@ void MassesAlongRun::pass_rigid_event(std::size_t n) {
   }
   v += joined;
   for (Mass& mass : masses) mass.w = mass.wall != 0 ? 0 : mass.w - joined;
+}
+
+bool MassesAlongRun::comes_to_settled_event(std::size_t n) {
+  come_to(n);
+  const auto& all = run_.chain.settled;
+  const std::size_t first = next_settled_;
+  while (next_settled_ < all.size() && all[next_settled_].motions == n) ++next_settled_;
+  settled_ = std::span(all).subspan(first, next_settled_ - first);
+  if (settled_.empty()) return false;
+  continued = false;
+  find_active();
+  return true;
+}
+
+void MassesAlongRun::pass_settled_event(std::size_t n) {
+  double gained = 0;
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    Mass& mass = masses[i];
+    mass.wall_before = mass.wall;
+    mass.slides_before = mass.slides;
+    if (mass.is_active) gained += of_.dampers[i].nu * (1 + of_.dampers[i].e) * mass.w / active_mass;
+  }
+  for (const MotionChain::Settled& each : settled_) {
+    const auto i = std::size_t(each.damper);
+    Mass& mass = masses[i];
+    const bool left = each.place.y == 0, right = each.place.y == of_.dampers[i].clearance;
+    mass.wall = !each.held ? 0 : left ? 1 : right ? -1 : held_by_friction;
+    mass.slides = each.slides;
+    mass.y = each.place.y;
+  }
+  in_contact.clear();
+  double joined = 0;
+  const double joined_to = joined_mass();
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    Mass& mass = masses[i];
+    if (mass.wall != 0) in_contact.push_back(i);
+    mass.joins = mass.wall != 0 && !(mass.wall_before != 0 && (impacts.empty() || mass.is_active));
+    const double after_impact = mass.is_active ? -of_.dampers[i].e * mass.w : mass.w - gained;
+    if (mass.joins) joined += of_.dampers[i].nu * after_impact / joined_to;
+  }
+  v += gained + joined;
+  for (const MotionChain::Settled& each : settled_) masses[std::size_t(each.damper)].w = each.place.w;
+  const double pressed = n == 0 ? acceleration(run_.chain.motions[n].begin) + of_.weight : 0;
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    Mass& mass = masses[i];
+    mass.joins_place = mass.joins && mass.wall != held_by_friction &&
+                       (n > 0 || mass.wall * pressed > of_.dampers[i].holding);
+  }
 }
 
 void MassesAlongRun::come_to_compliant_events(std::size_t n) {

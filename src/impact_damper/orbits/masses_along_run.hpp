@@ -24,19 +24,24 @@ struct VariationalCoefficients {
   struct OfDamper {
     double nu, e, clearance;
     double stiffness = 0, damping = 0;   // compliant walls: K and gamma of (M17.9)
+    double friction = 0, holding = 0;    // phi and phi_s
     std::optional<UnforcedModes> modes;  // of their contacts
   };
 
   VariationalCoefficients(Scene of_scene, const Engine& engine)
       : scene(std::move(of_scene)),
         rigid(has_rigid_walls(engine)),
+        has_components(impact_damper::has_components(scene)),
         zeta(scene.damping_ratio),
+        weight(scene.weight),
         force{scene.force_amplitude, scene.force_frequency},
         free(zeta, 1) {
     const auto* const exact = std::get_if<Exact>(&engine);
     for (const SceneDamper& each : scene.dampers) {
       OfDamper& damper = dampers.emplace_back(
           OfDamper{.nu = each.mass_ratio, .e = each.restitution, .clearance = each.clearance, .modes = {}});
+      damper.friction = each.friction;
+      damper.holding = each.holding();
       if (!exact) continue;
       damper.modes.emplace(System<double, NoForcing<double>>(scene, each),
                            zeta_m<double>(each, exact->calibration));
@@ -47,8 +52,8 @@ struct VariationalCoefficients {
   std::size_t dimensions() const { return 2 + 2 * dampers.size(); }
 
   Scene scene;
-  bool rigid;
-  double zeta;
+  bool rigid, has_components;
+  double zeta, weight;
   Forcing<double> force;
   Oscillator<double> free;  // the primary mass alone
   std::vector<OfDamper> dampers;
@@ -57,9 +62,10 @@ struct VariationalCoefficients {
 // For each motion n of the run, from 0, the caller calls comes_to_rigid_event(n) and, if that is true,
 // pass_rigid_event(n), or with compliant walls come_to_compliant_events(n) and pass_compliant_events(n). Then
 // it advances y and y' of the masses in flight to the end of the motion, as far as it needs them, and calls
-// pass(motion).
+// pass(motion). With friction or weight it calls comes_to_settled_event(n) and pass_settled_event(n) instead.
 class MassesAlongRun {
  public:
+  static constexpr int held_by_friction = 2;  // a value of Mass::wall: held between the walls
   struct Mass {
     double y, w;
     int wall = 0;                    // ContactInterval::away while it sticks or is in contact, else 0
@@ -68,6 +74,10 @@ class MassesAlongRun {
     // Whether at the last event at rigid walls it had an impact, stuck from then on, got an impulse from its
     // wall (M17.3).
     bool meets = false, joins = false, is_active = false;
+    // With friction: the sign of y' with which it acts, 0 where the mass does not slide, and the same before
+    // the last event. With friction or weight: whether the mass joined with the change of y, too (M13.24).
+    double slides = 0, slides_before = 0;
+    bool joins_place = false;
   };
 
   // Both must outlive this object.
@@ -79,6 +89,9 @@ class MassesAlongRun {
   bool comes_to_rigid_event(std::size_t n);
   // Applies that event to x', y, y' and `wall` of all masses.
   void pass_rigid_event(std::size_t n);
+  // The same for the events of a run with friction or weight, the first of which is its beginning.
+  bool comes_to_settled_event(std::size_t n);
+  void pass_settled_event(std::size_t n);
   // Sets `impacts` and `continued` for the events at compliant walls between the motions n - 1 and n: touches
   // and ends of contacts, for which ends_contact() is true.
   void come_to_compliant_events(std::size_t n);
@@ -94,6 +107,10 @@ class MassesAlongRun {
   double position_of_wall(std::size_t i) const { return masses[i].wall > 0 ? 0 : of_.dampers[i].clearance; }
   // The primary mass and all that sticks to it, divided by the primary mass.
   double joined_mass() const;
+  // x'' with friction or weight.
+  double acceleration(double time) const;
+  // -(x'' + y'') of a mass in flight.
+  double pull(std::size_t i) const { return of_.dampers[i].friction * masses[i].slides + of_.weight; }
 
   double x, v;
   std::vector<Mass> masses;
@@ -114,7 +131,8 @@ class MassesAlongRun {
 
   const VariationalCoefficients& of_;
   const RecordedRun& run_;
-  std::size_t next_contact_ = 0, next_impact_ = 0;
+  std::size_t next_contact_ = 0, next_impact_ = 0, next_settled_ = 0;
+  std::span<const MotionChain::Settled> settled_;  // between the motions n - 1 and n
   std::vector<MassAtWall<double>> at_walls_;
 };
 

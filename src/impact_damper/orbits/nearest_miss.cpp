@@ -1,8 +1,12 @@
 #include <algorithm>
+#include <optional>
 #include <vector>
 
+#include "impact_damper/engines/observer.hpp"
+#include "impact_damper/events/root_isolation.hpp"
 #include "impact_damper/motion/flight.hpp"
 #include "impact_damper/motion/joint_contact.hpp"
+#include "impact_damper/motion/shifted_motion.hpp"
 #include "impact_damper/orbits/masses_along_run.hpp"
 
 namespace impact_damper {
@@ -18,7 +22,13 @@ class NearestMiss {
   std::optional<double> find() {
     for (std::size_t n = 0; n < run_.chain.motions.size(); ++n) {
       const MotionChain::Motion& motion = run_.chain.motions[n];
-      if (of_.rigid) {
+      if (of_.has_components) {
+        if (now_.comes_to_settled_event(n)) {
+          now_.pass_settled_event(n);
+          note_stops();
+        }
+        pass_with_components(motion);
+      } else if (of_.rigid) {
         if (now_.comes_to_rigid_event(n)) now_.pass_rigid_event(n);
         pass_masses(motion, now_.joined_mass());
       } else {
@@ -36,6 +46,59 @@ class NearestMiss {
   }
 
  private:
+  void note(double gap) {
+    if (!(nearest_ && *nearest_ <= gap)) nearest_ = gap;
+  }
+  // A mass with friction turns back only where it stops.
+  void note_stops() {
+    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
+      const MassesAlongRun::Mass& mass = now_.masses[i];
+      if (mass.slides_before == 0 || mass.meets || mass.w != 0) continue;
+      note(mass.slides_before > 0 ? of_.dampers[i].clearance - mass.y : mass.y);
+    }
+  }
+  // Follows the masses in flight, which friction or weight act on, and updates the nearest miss by those
+  // without friction.
+  void pass_with_components(const MotionChain::Motion& motion) {
+    const double joined_mass = now_.joined_mass();
+    const Forcing<double> force{of_.force.amplitude / joined_mass, of_.force.frequency};
+    double rest = 0;
+    for (std::size_t i = 0; i < now_.masses.size(); ++i)
+      rest += of_.dampers[i].nu *
+              (now_.masses[i].wall == 0 ? of_.dampers[i].friction * now_.masses[i].slides : -of_.weight);
+    std::optional<ForcedOscillator> joined;
+    if (joined_mass != 1) joined.emplace(of_.zeta / joined_mass, 1 / joined_mass, of_.force);
+    const ShiftedMotion<double, Forcing<double>> primary(joined ? *joined : free_, force, motion.begin,
+                                                         now_.x, now_.v, rest);
+    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
+      MassesAlongRun::Mass& mass = now_.masses[i];
+      if (mass.wall != 0) continue;
+      const double pull = now_.pull(i), span = search_.span;
+      // Let go by its wall it has y'' = 0 there, too; see Flight::turn_of_y().
+      const auto& first = primary.primary().beginning();
+      const double begin =
+          mass.w == 0 ? begin_by_lead<double>(2, first[3], primary.primary().bound(4, span), span) : 0;
+      const auto gained = [&](double t) {
+        const auto [x, v, dx, dv] = primary.primary().at(t);
+        return PlaceInCavity{mass.w * t - (dx + pull * t * t / 2), -(dv + pull * t)};
+      };
+      const auto turn = [&](double sign, double from) {
+        return isolate_fall<double>(
+            [&](double t) {
+              const auto [x, v, dx, dv] = primary.primary().at(t);
+              const auto now = primary.primary().instant<6>(x, v, t);
+              return LocalEnclosure<double>{{sign * (mass.w - (dv + pull * t)), -sign * (now[2] + pull),
+                                             -sign * now[3], now.bound(4, span)}};
+            },
+            std::max(from, begin), motion.duration, search_, 1.0);
+      };
+      if (of_.dampers[i].friction == 0)
+        look_for_misses(i, turn, [&](double time) { return mass.y + gained(time).y; });
+      const PlaceInCavity end = gained(motion.duration);
+      mass.y += end.y;
+      mass.w += end.w;
+    }
+  }
   // Follows y and y' of the masses that fly, `joined_mass` being that of the primary mass and all that
   // sticks, and updates the nearest miss.
   void pass_masses(const MotionChain::Motion& motion, double joined_mass) {
@@ -113,7 +176,7 @@ class NearestMiss {
     double sign = mass.y == 0 ? 1 : mass.y == clearance ? -1 : mass.w >= 0 ? 1 : -1, from = 0;
     while (const std::optional<double> time = next(sign, from)) {
       const double y = position(*time), gap = sign > 0 ? clearance - y : y;
-      if (!(nearest_ && *nearest_ <= gap)) nearest_ = gap;
+      note(gap);
       sign = -sign;
       from = *time;
     }

@@ -46,6 +46,8 @@ Expected<Orbit, NoOrbit> find_orbit(const Scene& scene, const Engine& engine, in
   if (!(periods >= 1)) problems.push_back({"periods", "must be >= 1"});
   if (options.symmetric && periods % 2 == 0)
     problems.push_back({"periods", "must be odd for a symmetric orbit"});
+  if (options.symmetric && !has_mirror(scene))
+    problems.push_back({"symmetric", "must be false with weight, without which left and right are alike"});
   require_none(problems);
 
   Equation equation{scene, engine, options.symmetric ? periods : 2 * periods, Parameter::force_frequency,
@@ -56,7 +58,7 @@ Expected<Orbit, NoOrbit> find_orbit(const Scene& scene, const Engine& engine, in
 
   // The least number of half periods after which the orbit closes.
   for (int n = 1; n < equation.half_periods; ++n) {
-    const bool divides = equation.half_periods % n == 0;
+    const bool divides = equation.half_periods % n == 0 && (n % 2 == 0 || has_mirror(scene));
     if (!divides || !closes_after(equation, found->point, n, 100 * options.tolerance)) continue;
     Equation less = equation;
     less.half_periods = n;
@@ -85,7 +87,7 @@ Expected<Orbit, NoOrbit> branching_off(const BranchEvent& event, Parameter param
   const auto image =
       PoincareMap(equation.scene_at(event.parameter), from.engine, half_periods)(release_of(from.scene));
   if (!image) return NoOrbit{OrbitEnd::run_stopped};
-  const std::optional<StateVector> direction = eigenvector_of_minus_1(*image);
+  const std::optional<StateVector> direction = eigenvector_of_minus_1(*image, from.scene);
   if (!direction) return NoOrbit{};
   const Point normal = point_at(*direction, 0);
   for (const double gap : {0.01, -0.01, 0.001, -0.001}) {

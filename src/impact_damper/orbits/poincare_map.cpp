@@ -6,7 +6,9 @@
 #include <functional>
 #include <span>
 #include <utility>
+#include <variant>
 
+#include "impact_damper/base/number_text.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/orbits/masses_along_run.hpp"
 #include "impact_damper/orbits/variational_equations.hpp"
@@ -71,8 +73,26 @@ Multipliers multipliers_of(const Matrix& matrix) {
   return all;
 }
 
+std::vector<Problem> problems_of_derivatives(const Scene& scene, const Engine& engine) {
+  std::vector<Problem> problems = problems_of(scene, engine);
+  if (!problems.empty()) return problems;
+  for (const auto& [name, number, least, most] : numbers_of(scene)) {
+    const double value = number.in(scene);
+    if (!field_of(number).component || value == 0) continue;
+    const bool is_drag = number.is(&SceneDamper::drag);
+    if (!is_drag && std::holds_alternative<Restitution>(engine)) continue;
+    problems.push_back({name, "must be 0 where changes of the motion are followed, got " +
+                                  number_text(value) +
+                                  (is_drag ? ": only sweeps and basins have drag"
+                                           : ": only the restitution engine has friction and weight then")});
+  }
+  return problems;
+}
+
 Scene scene_of_map(Scene scene, int half_periods) {
   if (!(half_periods >= 1)) require_none({{"periods", "must be >= 1"}});
+  if (half_periods % 2 != 0 && !has_mirror(scene))
+    require_none({{"half_periods", "must be even with weight, without which left and right are alike"}});
   scene.x0 = scene.v0 = 0;
   for (SceneDamper& damper : scene.dampers) damper.y0 = damper.clearance / 2, damper.w0 = 0;
   scene.until_amplitude.reset();
@@ -85,7 +105,9 @@ PoincareMap::PoincareMap(const Scene& scene, const Engine& engine, int half_peri
       engine_(engine),
       half_periods_(half_periods),
       forced_(scene_, engine_),
-      coefficients_(variational_coefficients(scene_, engine_)) {}
+      coefficients_(variational_coefficients(scene_, engine_)) {
+  require_none(problems_of_derivatives(scene_, engine_));
+}
 
 Expected<PoincareImage, StopReason> PoincareMap::operator()(const SceneState& s, Derivatives wanted,
                                                             double misses_within) const {
@@ -94,9 +116,12 @@ Expected<PoincareImage, StopReason> PoincareMap::operator()(const SceneState& s,
   const double mirror = half_periods_ % 2 == 0 ? 1 : -1;
   PoincareImage image;
   image.state = mirror < 0 ? mirrored(run.end, scene_) : run.end;
-  std::vector<bool> is_idle(scene_.dampers.size(), !run.chain.impacts.empty());
+  std::vector<bool> is_idle(scene_.dampers.size(), !run.chain.impacts.empty() || !has_mirror(scene_));
   for (const MotionChain::Impact& each : run.chain.impacts) is_idle[std::size_t(each.damper)] = false;
-  for (const MotionChain::Contact& each : run.chain.contacts) is_idle[std::size_t(each.damper)] = false;
+  for (const MotionChain::Contact& each : run.chain.contacts)
+    if (!has_components(scene_)) is_idle[std::size_t(each.damper)] = false;
+  for (const MotionChain::Settled& each : run.chain.settled)
+    if (!each.held) is_idle[std::size_t(each.damper)] = false;
   for (std::size_t i = 0; i < is_idle.size(); ++i)
     if (is_idle[i]) image.idle.push_back(i);
   if (wanted == Derivatives::none) return image;
@@ -118,6 +143,7 @@ Expected<PoincareImage, StopReason> PoincareMap::operator()(const SceneState& s,
     image.by_amplitude[i] *= mirror;
   }
   image.one_sided = carried.one_sided;
+  image.stop_margin = carried.stop_margin;
   if (distance(image.state, s) <= misses_within) image.nearest_miss = nearest_miss(*coefficients_, run);
   image.impacts.reserve(run.chain.impacts.size());
   for (const MotionChain::Impact& each : run.chain.impacts)

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 #include <variant>
@@ -122,8 +123,17 @@ class JointPropagator {
 // Sets `all` to the rates of the state `now`: x', x'', then y' and y'' of each damper.
 void find_rates(const VariationalCoefficients& of, const MassesAlongRun& now, double time,
                 ChangeOfState& all) {
-  double a = of.force.amplitude * of.force.phase(time).sin - 2 * of.zeta * now.v - now.x;
   all.resize(of.dimensions());
+  if (of.has_components) {
+    all[0] = now.v, all[1] = now.acceleration(time);
+    for (std::size_t i = 0; i < now.masses.size(); ++i) {
+      const bool free = now.masses[i].wall == 0;
+      all[index_of_y(i)] = free ? now.masses[i].w : 0;
+      all[index_of_w(i)] = free ? -(all[1] + now.pull(i)) : 0;
+    }
+    return;
+  }
+  double a = of.force.amplitude * of.force.phase(time).sin - 2 * of.zeta * now.v - now.x;
   for (std::size_t i = 0; i < now.masses.size(); ++i) {
     const bool free = now.masses[i].wall == 0;
     all[index_of_y(i)] = free || !of.rigid ? now.masses[i].w : 0;
@@ -255,6 +265,134 @@ class RigidSaltation {
   ChangeOfState shifted_;
 };
 
+// The saltation matrix of an event of a run with friction or weight (13.11).
+class SettledSaltation {
+ public:
+  // Both must outlive this object.
+  SettledSaltation(const VariationalCoefficients& of, const MassesAlongRun& now) : of_(of), now_(now) {}
+
+  // Finds the matrix of an event at a time: begin() is called before its jump of the state, find() after it.
+  void begin(double time) {
+    find_rates(of_, now_, time, rates_before_);
+    mass_before_ = now_.joined_mass();
+  }
+  // No condition sets the time at which a run begins.
+  void find(double time, bool run_begins) {
+    find_rates(of_, now_, time, rates_after_);
+    find_shares();
+    conditions_.clear();
+    one_sided = false;
+    stop_margin.reset();
+    if (run_begins) {
+      // Against the direction in which it begins to slide a change of y' = 0 would stop at first.
+      for (const MassesAlongRun::Mass& mass : now_.masses)
+        one_sided = one_sided || (mass.slides != 0 && mass.w == 0);
+      return;
+    }
+    find_conditions(time);
+    if (conditions_.empty()) return;
+    one_sided = conditions_.size() > 1 || (last_time_ && time - *last_time_ <= 1e-14 * (1 + time));
+    last_time_ = time;
+    shift_ = rates_before_;
+    jump(shift_);
+    for (std::size_t i = 0; i < shift_.size(); ++i) shift_[i] = rates_after_[i] - shift_[i];
+  }
+  // Multiplies a change by it. by_force: the derivative of f at that time by what is changed.
+  void apply(ChangeOfState& s, double by_force) const {
+    double earlier = 0;  // by which the event comes
+    for (const Condition& each : conditions_)
+      earlier += each.change(s, by_force) / double(conditions_.size());
+    jump(s);
+    if (conditions_.empty()) return;
+    for (std::size_t i = 0; i < s.size(); ++i) s[i] += shift_[i] * earlier;
+  }
+
+  bool one_sided = false;             // of the last event
+  std::optional<double> stop_margin;  // Carried::stop_margin, of the last event
+
+ private:
+  // What sets the time of an event: a number of the state that comes to zero, at a rate; or (1 + sigma) x''
+  // that comes to the edge of a band, where `index` is 0.
+  struct Condition {
+    std::size_t index;
+    double rate, damping = 0;
+    double change(const ChangeOfState& s, double by_force) const {
+      return (index > 0 ? s[index] : by_force - damping * s[1] - s[0]) / rate;
+    }
+  };
+
+  void find_shares() {
+    const double joined_mass = now_.joined_mass();
+    gain_.assign(now_.masses.size(), 0.0);
+    share_.assign(now_.masses.size(), 0.0);
+    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
+      const OfDamper& its = of_.dampers[i];
+      if (now_.masses[i].is_active) gain_[i] = its.nu * (1 + its.e) / now_.active_mass;
+      if (now_.masses[i].joins) share_[i] = its.nu / joined_mass;
+    }
+  }
+  void find_conditions(double time) {
+    for (const MotionChain::Impact& impact : now_.impacts)
+      conditions_.push_back({index_of_y(std::size_t(impact.damper)), impact.w});
+    if (!conditions_.empty()) return;
+    // Stops (M13.29), (M13.30).
+    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
+      const MassesAlongRun::Mass& mass = now_.masses[i];
+      const bool stops = mass.slides_before != 0 && (mass.wall != 0 || mass.slides == -mass.slides_before);
+      if (!stops) continue;
+      const OfDamper& its = of_.dampers[i];
+      const double rate = rates_before_[index_of_w(i)];
+      conditions_.push_back({index_of_w(i), rate});
+      double margin = std::fabs(rate);
+      if (its.holding > its.friction) {
+        const double held = rates_before_[1] + its.nu / (mass_before_ + its.nu) * rate;  // x'', if it is held
+        margin = std::min(margin, std::fabs(std::fabs(held + of_.weight) - its.holding));
+      }
+      if (!(stop_margin && *stop_margin <= margin)) stop_margin = margin;
+    }
+    if (!conditions_.empty()) return;
+    // Releases (M13.31), at which the rates jump only where phi_s > phi (M13.32).
+    const double damping = 2 * of_.zeta;
+    const double rate = of_.force.amplitude * of_.force.frequency * of_.force.phase(time).cos -
+                        damping * rates_before_[1] - rates_before_[0];
+    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
+      const MassesAlongRun::Mass& mass = now_.masses[i];
+      const OfDamper& its = of_.dampers[i];
+      if (mass.wall_before != 0 && mass.wall == 0 && its.holding > its.friction)
+        conditions_.push_back({0, rate, damping});
+    }
+  }
+  // Multiplies a change by the derivative D of the jump, (M13.23) and (M13.24).
+  void jump(ChangeOfState& s) const {
+    double gained = 0, x = 0, v = 0;
+    for (std::size_t i = 0; i < gain_.size(); ++i) gained += gain_[i] * s[index_of_w(i)];
+    for (std::size_t i = 0; i < gain_.size(); ++i) {
+      const MassesAlongRun::Mass& mass = now_.masses[i];
+      double& w = s[index_of_w(i)];
+      w = mass.is_active ? -of_.dampers[i].e * w : w - gained;
+      v += share_[i] * w;
+      if (mass.joins_place) x += share_[i] * s[index_of_y(i)];
+    }
+    s[0] += x;
+    s[1] += gained + v;
+    for (std::size_t i = 0; i < gain_.size(); ++i) {
+      const MassesAlongRun::Mass& mass = now_.masses[i];
+      double &y = s[index_of_y(i)], &w = s[index_of_w(i)];
+      w = mass.wall != 0 ? 0 : w - v;
+      if (mass.wall == 0) y -= x;
+      if (mass.joins_place) y = 0;
+    }
+  }
+
+  const VariationalCoefficients& of_;
+  const MassesAlongRun& now_;
+  std::vector<double> gain_, share_;  // nu (1+e) of those with an impulse, nu of those that join; over masses
+  std::vector<Condition> conditions_;
+  double mass_before_ = 1;
+  std::optional<double> last_time_;
+  ChangeOfState rates_before_, rates_after_, shift_;  // F^-, F^+ and F^+ - D F^-
+};
+
 // Carries changes along one run, motion by motion.
 class VariationalEquations {
  public:
@@ -266,17 +404,21 @@ class VariationalEquations {
         changes_(changes),
         after_step_(after_step),
         now_(of, run),
-        saltation_(of, now_) {}
+        saltation_(of, now_),
+        settled_(of, now_),
+        dimensions_lost_(of.dampers.size()) {}
 
   Carried carry() {
     for (std::size_t n = 0; n < run_.chain.motions.size(); ++n) {
-      if (of_.rigid) {
+      if (of_.has_components) {
+        pass_settled_event(n);
+      } else if (of_.rigid) {
         pass_rigid_event(n);
       } else {
         pass_compliant_events(n);
       }
       const MotionChain::Motion& motion = run_.chain.motions[n];
-      if (of_.rigid) all_.lost = std::max(all_.lost, 2 * now_.in_contact.size());
+      if (of_.rigid && !of_.has_components) all_.lost = std::max(all_.lost, 2 * now_.in_contact.size());
       if (of_.rigid || now_.in_contact.empty()) {
         pass_flight(motion);
       } else if (now_.in_contact.size() > 1) {
@@ -318,6 +460,31 @@ class VariationalEquations {
     saltation_.find(time);
     all_.one_sided = all_.one_sided || now_.impacts.size() > 1;
     carry_all(1, [&](ChangeOfState& s, int) { saltation_.apply(s); });
+  }
+  // The same with friction or weight.
+  void pass_settled_event(std::size_t n) {
+    if (!now_.comes_to_settled_event(n)) return;
+    const double time = run_.chain.motions[n].begin;
+    settled_.begin(time);
+    now_.pass_settled_event(n);
+    settled_.find(time, n == 0);
+    all_.one_sided = all_.one_sided || settled_.one_sided;
+    if (settled_.stop_margin && !(all_.stop_margin && *all_.stop_margin <= *settled_.stop_margin))
+      all_.stop_margin = settled_.stop_margin;
+    carry_all(1, [&](ChangeOfState& s, int) {
+      double by_force = 0;
+      if (along_ && &s == &along_->by_frequency) by_force = JointPropagator::secular(of_.force, time)[0];
+      if (along_ && &s == &along_->by_amplitude) by_force = JointPropagator::harmonic(of_.force, time)[0];
+      settled_.apply(s, by_force);
+    });
+    // A mass that friction stops loses the change of y', one that stays on its wall that of y, too.
+    std::size_t lost = 0;
+    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
+      const MassesAlongRun::Mass& mass = now_.masses[i];
+      if (mass.joins) dimensions_lost_[i] = mass.joins_place || mass.meets ? 2 : 1;
+      if (mass.wall != 0) lost += dimensions_lost_[i];
+    }
+    all_.lost = std::max(all_.lost, lost);
   }
   // Applies the touches and ends of contacts between the motion n and the one before (M13.25).
   void pass_compliant_events(std::size_t n) {
@@ -378,6 +545,9 @@ class VariationalEquations {
     if (of_.rigid)
       for (MassesAlongRun::Mass& each : now_.masses)
         if (each.wall == 0) each.w += now_.v - motion.v;
+    if (of_.has_components)
+      for (std::size_t i = 0; i < now_.masses.size(); ++i)
+        if (now_.masses[i].wall == 0) now_.masses[i].w -= now_.pull(i) * motion.duration;
   }
   // Carries changes through a motion in which one mass pushes a compliant wall. The columns of the propagator
   // are contacts without a force, each from a unit state.
@@ -485,6 +655,8 @@ class VariationalEquations {
   // y is not followed, nor y' with compliant walls, where no matrix depends on them.
   MassesAlongRun now_;
   RigidSaltation saltation_;
+  SettledSaltation settled_;
+  std::vector<std::size_t> dimensions_lost_;  // by each mass while it is held, with friction or weight
   Carried all_;
 };
 

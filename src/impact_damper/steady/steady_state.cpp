@@ -21,6 +21,10 @@ constexpr std::int64_t blocks = 10;
 // A function that runs the engine for scenes that differ from `scene` in initial condition and stops only.
 std::function<Outcome(const Scene&, Recorder&)> runner(const Scene& scene, const Exact& options) {
   const ForcedSystem system(scene);
+  if (has_components(scene))
+    return [system, options](const Scene& from, Recorder& recorder) {
+      return run_exact_with_components(system, from, options, recorder);
+    };
   if (!has_one_damper(scene)) {
     ModesOfDampers<double, Forcing<double>> modes;
     for (std::size_t n = 0; n < scene.dampers.size(); ++n)
@@ -37,8 +41,9 @@ std::function<Outcome(const Scene&, Recorder&)> runner(const Scene& scene, const
 }
 std::function<Outcome(const Scene&, Recorder&)> runner(const Scene& scene, const Restitution& options) {
   return [system = ForcedSystem(scene), options](const Scene& from, Recorder& recorder) {
-    return has_one_damper(from) ? run_restitution(system, from, options, recorder)
-                                : run_restitution_dampers(system, from, options, recorder);
+    return has_components(from)   ? run_restitution_with_components(system, from, options, recorder)
+           : has_one_damper(from) ? run_restitution(system, from, options, recorder)
+                                  : run_restitution_dampers(system, from, options, recorder);
   };
 }
 std::function<Outcome(const Scene&, Recorder&)> runner(const Scene&, const Cem&) {
@@ -93,6 +98,8 @@ SceneState state_in(const History& history, std::size_t row) {
     state.dampers.push_back({damper.y[row], damper.w[row]});
   return state;
 }
+
+bool has_mirror(const Scene& scene) { return scene.weight == 0; }
 
 SceneState mirrored(const SceneState& s, const Scene& scene) {
   SceneState image = s;
@@ -182,11 +189,7 @@ std::vector<Problem> problems_of(const Scene& scene, const Engine& engine) {
   if (std::holds_alternative<Cem>(engine)) {
     problems.push_back({"engine", "must be exact or restitution, got cem"});
   } else if (problems.empty()) {
-    for (const auto& [name, number, least, most] : numbers_of(scene))
-      if (const double value = number.in(scene); field_of(number).component && value != 0)
-        problems.push_back({name, "must be 0, got " + number_text(value) +
-                                      ": steady motions are looked for without friction, weight and drag"});
-    if (problems.empty()) problems = incompatibilities_of(scene, engine);
+    problems = incompatibilities_of(scene, engine);
     if (problems.empty() && has_laws(scene))
       problems.push_back({"restitution",
                           "must be one number: steady motions are looked for without one that "
@@ -338,7 +341,7 @@ SteadyMeans ForcedScene::means_of(const Watched& watched, const SceneState& begi
   const double sign = f0 < 0 ? -1 : 1;
   means.fundamental = square_root(in_phase * in_phase + behind * behind);
   means.lag_deg = angle_of(sign * behind, sign * in_phase) * (180 / half_turn<double>());
-  double lost = energy.contact_loss + energy.bounce_down_loss;
+  double lost = energy.contact_loss + energy.bounce_down_loss + energy.friction_loss + energy.drag_loss;
   for (const double loss : energy.impact_loss) lost += loss;
   means.power = energy.forcing_work / duration;
   means.viscous_power = energy.viscous_work / duration;
@@ -358,7 +361,7 @@ void ForcedScene::measure_periodic(SteadyState& steady, const SteadyRule& rule) 
   steady.impacts = watched->impacts_until_half_way;
   steady.impacts_by_damper = watched->by_damper_until_half_way;
   steady.means = means_of(*watched, steady.state, 2 * m);
-  if (m % 2 == 1) {
+  if (m % 2 == 1 && has_mirror(scene_)) {
     const Watched half = *watch(steady.state, m);  // does not fail: twice as many periods did not
     const double near = 100 * rule.tolerance * size_of(steady.state);
     steady.symmetric = distance(mirrored(half.states[0], scene_), steady.state) <= near;

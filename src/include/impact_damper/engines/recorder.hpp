@@ -34,9 +34,18 @@ struct MotionChain {
     Wall wall;
     std::int32_t damper;
   };
+  // With friction or weight: of each damper, when the run begins and after each event (observer.hpp).
+  struct Settled {
+    std::size_t motions;
+    std::int32_t damper;
+    PlaceInCavity place;
+    bool held;
+    double slides;
+  };
   std::vector<Motion> motions;
   std::vector<Impact> impacts;
   std::vector<Contact> contacts;
+  std::vector<Settled> settled;
 };
 
 class Recorder {
@@ -56,6 +65,9 @@ class Recorder {
   void contact(double begin, double end, Wall wall, std::int32_t damper = 0);
   void passed(double begin, double duration, const State<double>& end) {
     if (chain_) chain_->motions.push_back({begin, duration, end.x, end.v});
+  }
+  void settled(std::int32_t damper, const PlaceInCavity& place, bool held, double slides) {
+    if (chain_) chain_->settled.push_back({chain_->motions.size(), damper, place, held, slides});
   }
 
   // The time of the next history sample; infinity while none is known. A half cycle may open a window that

@@ -317,6 +317,10 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
   void settle() {
     settle_at_rest();
     for (std::size_t n = 0; n < masses_.size() && take_limits(); ++n) settle_at_rest();
+    if constexpr (requires { observer_.settled(std::int32_t{}, PlaceInCavity{}, false, 0.0); })
+      for (std::size_t i = 0; i < masses_.size(); ++i)
+        observer_.settled(masses_.number[i], masses_.place(i, masses_.u[i], masses_.u1[i]),
+                          bool(masses_.held[i]), double(slides_[i]));
   }
   void settle_at_rest() {
     stays_.assign(masses_.size(), false);

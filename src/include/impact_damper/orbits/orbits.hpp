@@ -59,7 +59,7 @@ struct Orbit {
   // Symmetric orbits: the multipliers of half its period with the mirror, whose squares are `multipliers`.
   std::optional<Multipliers> half_multipliers;
   // Distances from grazing and from a coincidence of impacts, as in PoincareImage.
-  std::optional<double> slowest_impact, nearest_miss, least_interval;
+  std::optional<double> slowest_impact, nearest_miss, stop_margin, least_interval;
 
   // Whether all multipliers lie inside the unit circle. False without impacts: two are 1, as the secondary
   // mass stays wherever it rests.

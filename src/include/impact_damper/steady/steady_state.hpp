@@ -63,7 +63,7 @@ struct SteadyMeans {
   double fundamental = 0, lag_deg = 0;
   double power = 0;          // work of the force per unit of time
   double viscous_power = 0;  // taken out by the damper of the primary mass
-  double impact_power = 0;   // taken out by impacts and contacts
+  double impact_power = 0;   // taken out by impacts and contacts, and by friction and drag in the cavities
 };
 
 struct SteadyState {
@@ -164,6 +164,8 @@ SceneState state_in(const History& history, std::size_t row);
 SceneState release_of(const Scene& scene);
 Scene released_from(Scene scene, const SceneState& state);
 
+// Whether the mirror image of each motion, half a period of the force later, is a motion: without weight.
+bool has_mirror(const Scene& scene);
 // The mirror image of a state of the scene: left and right exchanged.
 SceneState mirrored(const SceneState& s, const Scene& scene);
 // The largest difference of two states' components.

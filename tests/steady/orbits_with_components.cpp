@@ -1,0 +1,189 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+#include "impact_damper/orbits/branches.hpp"
+#include "impact_damper/orbits/lyapunov.hpp"
+#include "impact_damper/orbits/orbits.hpp"
+#include "impact_damper/orbits/poincare_map.hpp"
+#include "impact_damper/steady/steady_state.hpp"
+
+using namespace impact_damper;
+
+namespace {
+
+// Friction holds its mass at all times.
+Scene locked() {
+  return {.damping_ratio = 0.07,
+          .x0 = 0,
+          .force_amplitude = 0.3,
+          .force_frequency = 0.8,
+          .dampers = {{.mass_ratio = 0.2, .y0 = 0.3, .friction = 100}}};
+}
+// The multipliers of a period of an oscillator of the mass 1 + nu.
+std::complex<double> multiplier_of_locked(const Scene& scene) {
+  const double mass = 1 + scene.damper().mass_ratio, a = scene.damping_ratio / mass;
+  const double period = 2 * std::numbers::pi / scene.force_frequency;
+  return std::exp(period * std::complex<double>(-a, std::sqrt(1 / mass - a * a)));
+}
+
+// The mass slides, stops, is let go and meets its walls.
+Scene sliding(double static_friction, double weight, double friction = 0.15) {
+  return {.damping_ratio = 0.05,
+          .x0 = 1,
+          .force_amplitude = 0.25,
+          .force_frequency = 0.95,
+          .weight = weight,
+          .dampers = {{.mass_ratio = 0.1,
+                       .restitution = 0.5,
+                       .y0 = 0.3,
+                       .friction = friction,
+                       .static_friction = static_friction}}};
+}
+
+}  // namespace
+
+TEST_CASE("a mass that friction holds has the multipliers of an oscillator of the mass 1 + nu") {
+  const Scene scene = locked();
+  const std::complex<double> expected = multiplier_of_locked(scene);
+  const auto holds = [&](const Multipliers& found, std::complex<double> value) {
+    return std::ranges::any_of(found, [&](const Multiplier& each) {
+      return std::abs(std::complex<double>(each.re, each.im) - value) < 1e-12;
+    });
+  };
+  SUBCASE("between walls that are alike it stays in the middle, where half a period mirrors it") {
+    const auto orbit = find_orbit(scene, Restitution{}, 1, {0.1, 0.2, 0.3, 0}, {.symmetric = true});
+    REQUIRE(orbit);
+    CHECK(orbit->scene.damper().y0 == doctest::Approx(0.5).epsilon(1e-12));
+    REQUIRE(orbit->multipliers.size() == 4);
+    CHECK(holds(orbit->multipliers, expected));
+    CHECK(holds(orbit->multipliers, std::conj(expected)));
+    CHECK(holds(orbit->multipliers, 1));  // of y
+    CHECK(holds(orbit->multipliers, 0));  // of y', a change of which friction stops
+  }
+  SUBCASE("with weight it stays where it is") {
+    Scene leaning = scene;
+    leaning.weight = 1.5;
+    const auto orbit = find_orbit(leaning, Restitution{}, 1, {0.1, 0.2, 0.3, 0});
+    REQUIRE(orbit);
+    CHECK(orbit->scene.damper().y0 == doctest::Approx(0.3).epsilon(1e-12));
+    REQUIRE(orbit->idle.size() == 1);
+    REQUIRE(orbit->multipliers.size() == 2);
+    CHECK(holds(orbit->multipliers, expected));
+    CHECK(holds(orbit->multipliers, std::conj(expected)));
+    // x of the oscillator at phase 0, about its place of rest.
+    const double mass = 1.2, w = scene.force_frequency, stiff = 1 - mass * w * w, loss = 2 * 0.07 * w;
+    CHECK(orbit->scene.x0 ==
+          doctest::Approx(-0.2 * 1.5 - 0.3 * loss / (stiff * stiff + loss * loss)).epsilon(1e-12));
+  }
+  SUBCASE("its exponents") {
+    const LyapunovExponents found = lyapunov_exponents(scene, Restitution{}, 200, 10);
+    const double rate = -0.07 / 1.2;
+    REQUIRE(found.exponents.size() == 3);
+    // Of y, which acts on nothing, and of x and x'.
+    CHECK(*std::ranges::max_element(found.exponents) == doctest::Approx(0).scale(1).epsilon(1e-12));
+    CHECK(std::accumulate(found.exponents.begin(), found.exponents.end(), 0.0) ==
+          doctest::Approx(2 * rate).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("multipliers with friction and weight are those of differences of plain runs") {
+  int stops = 0, compared = 0, jumps = 0, by_weight = 0, held = 0;
+  for (const auto& [friction, static_friction] :
+       std::vector<std::array<double, 2>>{{0.15, 0}, {0.15, 0.25}, {0.5, 0}, {0.5, 0.7}}) {
+    for (const double weight : {0.0, 0.06}) {
+      for (const double frequency : {0.8, 0.95, 1.1}) {
+        Scene scene = sliding(static_friction, weight, friction);
+        scene.force_frequency = frequency;
+        CAPTURE(scene.damper().friction);
+        CAPTURE(scene.damper().static_friction);
+        CAPTURE(scene.weight);
+        CAPTURE(scene.force_frequency);
+        const SteadyState steady = ForcedScene(scene, Restitution{}).settle(release_of(scene), {});
+        if (!steady.period) continue;
+        const auto orbit = find_orbit(scene, Restitution{}, int(*steady.period), steady.state);
+        REQUIRE(orbit);
+        CHECK(orbit->residuals.back() < 1e-10);
+        CHECK(orbit->symmetric == (steady.symmetric && weight == 0));
+        // On its walls, and where friction holds it, changes of y and y' have one side.
+        const SceneState start = release_of(orbit->scene);
+        if (start.dampers[0].w == 0) continue;
+        const PoincareMap map(scene, Restitution{}, 2 * orbit->periods);
+        const PoincareImage image = *map(start);
+        Matrix differences(4, Vector(4));
+        for (std::size_t j = 0; j < 4; ++j) {
+          const double h = 1e-6;
+          StateVector up = vector_of(start), down = up;
+          up[j] += h, down[j] -= h;
+          const StateVector a = vector_of(map(state_of(up))->state),
+                            b = vector_of(map(state_of(down))->state);
+          for (std::size_t i = 0; i < 4; ++i) {
+            differences[i][j] = (a[i] - b[i]) / (2 * h);
+            CHECK(image.by_state[i][j] == doctest::Approx(differences[i][j]).epsilon(2e-6).scale(1));
+          }
+        }
+        const Multipliers expected = multipliers_of(differences);
+        CHECK(orbit->multipliers[0].modulus() == doctest::Approx(expected[0].modulus()).epsilon(1e-5));
+        ++compared;
+        const RecordedRun run = ForcedScene(scene, Restitution{}).record(start, map.duration());
+        held += int(std::ranges::count(run.chain.settled, true, &MotionChain::Settled::held));
+        stops += image.stop_margin.has_value();
+        jumps += image.stop_margin.has_value() && static_friction > 0;
+        by_weight += weight > 0;
+      }
+    }
+  }
+  CHECK(compared >= 12);
+  CHECK(stops >= 12);
+  CHECK(jumps >= 6);
+  CHECK(by_weight >= 6);
+  CHECK(held >= 10);
+}
+
+TEST_CASE("a branch of orbits with friction is followed, with the amplitudes of steady states") {
+  const Scene scene = sliding(0.25, 0.06);
+  const auto found = find_branches(scene, Restitution{}, {Parameter::force_frequency, 0.95, 1.05}, {},
+                                   {release_of(scene)}, {}, [](std::int64_t) {});
+  REQUIRE(!found.branches.empty());
+  const FollowedBranch& followed = found.branches[0];
+  for (const Orbit& orbit : followed.branch.orbits) CHECK_FALSE(orbit.symmetric);
+  const Orbit& last = followed.branch.orbits.back();
+  const SteadyState steady = ForcedScene(last.scene, Restitution{}).settle(release_of(last.scene), {});
+  REQUIRE(steady.means);
+  CHECK(steady.means->amplitude == doctest::Approx(followed.amplitudes.back()).epsilon(1e-9));
+}
+
+TEST_CASE("the force feeds what damper, impacts, friction and drag take, with every engine that has them") {
+  Scene scene = sliding(0.25, 0.06);
+  for (const Engine& engine : std::vector<Engine>{Restitution{}, Exact{}}) {
+    const bool exact = !has_rigid_walls(engine);
+    scene.damper().drag = exact ? 0.02 : 0;
+    const SteadyState steady = ForcedScene(scene, engine).settle(release_of(scene), {});
+    REQUIRE(steady.period);
+    CHECK_FALSE(steady.symmetric);
+    CHECK(steady.means->power ==
+          doctest::Approx(steady.means->viscous_power + steady.means->impact_power).epsilon(1e-8));
+  }
+}
+
+TEST_CASE("what the derivatives do not know is rejected, with the engine that knows it") {
+  Scene scene = sliding(0, 0.06);
+  CHECK_THROWS_WITH_AS(
+      PoincareMap(scene, Exact{}, 2),
+      "friction: must be 0 where changes of the motion are followed, got 0.15: only the "
+      "restitution engine has friction and weight then\nweight: must be 0 where changes of the "
+      "motion are followed, got 0.06: only the restitution engine has friction and weight then",
+      InvalidArguments);
+  CHECK_THROWS_AS(PoincareMap(scene, Restitution{}, 1), InvalidArguments);
+  CHECK_THROWS_AS(find_orbit(scene, Restitution{}, 1, release_of(scene), {.symmetric = true}),
+                  InvalidArguments);
+  scene.damper().drag = 0.1;
+  CHECK_THROWS_AS(lyapunov_exponents(scene, Restitution{}, 10), InvalidArguments);
+  CHECK_THROWS_AS(lyapunov_exponents(scene, Exact{}, 10), InvalidArguments);
+}
