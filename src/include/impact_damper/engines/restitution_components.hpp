@@ -457,6 +457,7 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
     candidates_.clear();
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       if (masses_.held[i] || masses_.away[i] != side || masses_.u1[i] == 0) continue;
+      if (masses_.u[i] == 0 && masses_.u1[i] < 0) continue;  // an impact now, maybe with others, comes first
       const Real &u1 = masses_.u1[i], out = u1 > 0 ? u1 : Real(0),
                  high = masses_.u[i] > 0 ? masses_.u[i] : Real(0);
       if (masses_.nu[i] * (high + out * out / (4 * absolute(now.value))) <= mass_ * x_scale)
