@@ -21,7 +21,7 @@ enum class OrbitEnd {
   no_convergence,  // the residual did not come below the tolerance, for instance because the orbit is not
                    // isolated (OrbitOptions::symmetric)
   no_derivative,   // several masses meet rigid walls at one instant: the effect of a change depends on their
-                   // order
+                   // order. With friction also where other events coincide, or stop_margin is <= tolerance
   run_stopped,     // a budget ended a run before its periods were over
 };
 
