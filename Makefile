@@ -17,7 +17,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 # What the program and the figures need, and nothing else: `make bare` holds it against a bare system.
 PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev gnuplot-nox librsvg2-bin fonts-dejavu-core
 # What the tests need beside these.
-CHECK_PACKAGES := git doctest-dev libmpfr-dev python3 python3-jsonschema python3-yaml clang llvm lld libclang-rt-dev \
+CHECK_PACKAGES := git doctest-dev libboost-dev libmpfr-dev python3 python3-jsonschema python3-yaml clang llvm lld libclang-rt-dev \
   locales clang-tidy cppcheck gcovr valgrind pandoc chromium groff-base pkgconf zsh fish doxygen \
   pybind11-dev python3-dev python3-numpy libhdf5-dev hdf5-tools
 # What the report is made of, and what its PDF is set with.
