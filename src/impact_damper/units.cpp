@@ -190,6 +190,13 @@ std::vector<Problem> problems_of(const SceneInUnits& scene) {
     for (const UnitField& field : unit_fields)
       if (field.number.of_damper)
         check(damper_field(i, field.name), field, scene.dampers[i].*field.number.of_damper);
+  // Made dimensionless, a tiny negative speed may be 0.
+  for (std::size_t i = 0; i < scene.dampers.size() && i < most_dampers; ++i) {
+    const Pairs& pairs = scene.dampers[i].restitution_by_speed;
+    if (!pairs.empty() && !(pairs.front()[0] >= 0))
+      problems.push_back({one ? "restitution" : damper_field(i, "restitution"),
+                          "must have speeds >= 0, got " + number_text(pairs.front()[0])});
+  }
   if (scene.dampers.empty()) problems.push_back({"dampers", "must be at least one, got 0"});
   if (!(scene.spring.cubic >= 0))
     problems.push_back({"spring.cubic", "must be >= 0, got " + number_text(scene.spring.cubic)});

@@ -43,8 +43,8 @@ BEYOND_SCHEMAS = {
     "It multiplies nothing.": [r"must give at most \d+ points", r"must make at most \d+ runs in all"],
     "A range that depends on another part of the file.": [
         r"/(grid|samples/numbers)/\d+/(from|to|values/\d+): must be a number .*, got -?\d",
-        r"/wall/speed: must be >= ", r"/spring/cubic: must be >= 0 and <= 1e\+12, got \d", "/spring/cubic: must be 0 or of",
-        "must have lengths up to", r"must have speeds that rise, from 0 to 1e\+12, got \[\d",
+        r"/wall/speed: must be >= ", r"/spring/cubic: must be >= 0 and <= 1e\+12, got \d", r"/spring/cubic: must be 0 or of .*, got \d",
+        "must have lengths up to", r"must have speeds that rise, from 0 to 1e\+12, got \[(\d|-0\.0)",
         r"/restitution: must be >= 0\.001 beside a wall with a law of its own, got",
         "with the restitution engine, whose walls are rigid, got", ", its clearance, as walls are rigid, got",
         r"/damper/\d+: must be a whole number >= 1 and <= \d+, got ([1-9]\d{0,2}|1000)(\.0)?$"],
@@ -62,7 +62,7 @@ BEYOND_SCHEMAS = {
     "What is named elsewhere in the file.": [
         "must draw (a scene|runs) of this catalogue", "must be a scene of this catalogue",
         "in the (scene's record, which|record of run)", "must be the amplitude of a history window"],
-    "It divides no masses, lengths or times.": [": made dimensionless, as [][.a-z0-9_]+, must be"],
+    "It divides no masses, lengths or times.": [r": made dimensionless, as [][.a-z0-9_]+, must be (?!2 to \d+ pairs)"],
     "It takes no values from elsewhere in the file.": ['/stamp: must be "[0-9a-f]{8}'],
 }
 VALIDATORS = {kind: validator(kind) for kind in KINDS}
