@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "impact_damper/orbits/lyapunov.hpp"
 #include "impact_damper/orbits/orbits.hpp"
 #include "impact_damper/orbits/poincare_map.hpp"
+#include "impact_damper/simulate.hpp"
 #include "impact_damper/steady/steady_state.hpp"
 
 using namespace impact_damper;
@@ -146,6 +148,33 @@ TEST_CASE("multipliers with friction and weight are those of differences of plai
   CHECK(held >= 10);
 }
 
+TEST_CASE("masses that stop together and are held, and are let go together, have a derivative") {
+  Scene scene{.damping_ratio = 0.05, .x0 = 0.3, .force_amplitude = 0.2, .force_frequency = 0.8};
+  for (const double static_friction : {0.0, 0.3}) {
+    CAPTURE(static_friction);
+    scene.dampers.assign(2, {.mass_ratio = 0.1,
+                             .clearance = 100,
+                             .y0 = 50,
+                             .friction = 0.25,
+                             .static_friction = static_friction});
+    const PoincareMap map(scene, Restitution{}, 4);
+    const SceneState start = release_of(scene);
+    const PoincareImage image = *map(start);
+    const auto settled = ForcedScene(scene, Restitution{}).record(start, map.duration()).chain.settled;
+    CHECK(std::ranges::count(settled, true, &MotionChain::Settled::held) >= 6);
+    CHECK(image.stop_margin);
+    CHECK_FALSE(image.one_sided);
+    for (std::size_t j = 0; j < 2; ++j) {
+      const double h = 1e-6;
+      StateVector up = vector_of(start), down = up;
+      up[j] += h, down[j] -= h;
+      const StateVector a = vector_of(map(state_of(up))->state), b = vector_of(map(state_of(down))->state);
+      for (std::size_t i = 0; i < a.size(); ++i)
+        CHECK(image.by_state[i][j] == doctest::Approx((a[i] - b[i]) / (2 * h)).epsilon(1e-6).scale(1));
+    }
+  }
+}
+
 TEST_CASE("a branch of orbits with friction is followed, with the amplitudes of steady states") {
   const Scene scene = sliding(0.25, 0.06);
   const auto found = find_branches(scene, Restitution{}, {Parameter::force_frequency, 0.95, 1.05}, {},
@@ -159,11 +188,53 @@ TEST_CASE("a branch of orbits with friction is followed, with the amplitudes of 
   CHECK(steady.means->amplitude == doctest::Approx(followed.amplitudes.back()).epsilon(1e-9));
 }
 
+TEST_CASE("the nearest miss with friction or weight is that of densely sampled runs") {
+  int turned = 0, stopped = 0;
+  for (const auto& [friction, weight] : std::vector<std::array<double, 2>>{
+           {0, 0.06}, {0, 0.2}, {0.15, 0}, {0.15, 0.06}, {0.5, 0}, {0.5, 0.2}}) {
+    for (const double frequency : {0.6, 0.8, 0.95, 1.1, 1.4}) {
+      Scene scene = sliding(friction > 0 ? 0.6 : 0, weight, friction);
+      scene.force_frequency = frequency;
+      CAPTURE(friction);
+      CAPTURE(weight);
+      CAPTURE(frequency);
+      const PoincareMap map(scene, Restitution{}, 4);
+      const PoincareImage image = *map(release_of(scene));
+      scene.until_time = map.duration();
+      const Run run = simulate(scene, Restitution{},
+                               {.half_cycles = false,
+                                .impacts = true,
+                                .contacts = true,
+                                .history = {{0, map.duration(), 100'001}}});
+      const auto& [y, w] = run.history->dampers[0];
+      const std::vector<double>& time = run.history->time;
+      double nearest = std::numeric_limits<double>::infinity();
+      bool by_stop = false;
+      for (std::size_t n = 1; n < y.size(); ++n) {
+        const auto between = [&](double event) { return event > time[n - 1] && event <= time[n]; };
+        if (std::ranges::any_of(run.impacts->time, between) || y[n] == 0 || y[n] == 1) continue;
+        if (!(w[n] * w[n - 1] < 0 || (w[n] == 0 && w[n - 1] != 0))) continue;
+        const double gap = w[n - 1] > 0 ? 1 - y[n] : y[n];
+        if (!(gap < nearest)) continue;
+        nearest = gap;
+        by_stop = w[n] == 0;
+      }
+      REQUIRE(image.nearest_miss.has_value() == std::isfinite(nearest));
+      if (!image.nearest_miss) continue;
+      CHECK(*image.nearest_miss == doctest::Approx(nearest).epsilon(1e-6));
+      ++turned;
+      stopped += by_stop;
+    }
+  }
+  CHECK(turned >= 12);
+  CHECK(stopped >= 4);
+}
+
 TEST_CASE("the force feeds what damper, impacts, friction and drag take, with every engine that has them") {
   Scene scene = sliding(0.25, 0.06);
+  scene.damper().drag = 0.02;
   for (const Engine& engine : std::vector<Engine>{Restitution{}, Exact{}}) {
-    const bool exact = !has_rigid_walls(engine);
-    scene.damper().drag = exact ? 0.02 : 0;
+    CAPTURE(name_of(engine));
     const SteadyState steady = ForcedScene(scene, engine).settle(release_of(scene), {});
     REQUIRE(steady.period);
     CHECK_FALSE(steady.symmetric);

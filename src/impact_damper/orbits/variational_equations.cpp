@@ -284,14 +284,15 @@ class SettledSaltation {
     one_sided = false;
     stop_margin.reset();
     if (run_begins) {
-      // Against the direction in which it begins to slide a change of y' = 0 would stop at first.
+      // A mass at rest that begins to slide: after a change of y' against that direction it would stop first.
       for (const MassesAlongRun::Mass& mass : now_.masses)
         one_sided = one_sided || (mass.slides != 0 && mass.w == 0);
       return;
     }
     find_conditions(time);
     if (conditions_.empty()) return;
-    one_sided = conditions_.size() > 1 || (last_time_ && time - *last_time_ <= 1e-14 * (1 + time));
+    one_sided =
+        (conditions_.size() > 1 && !all_stay_) || (last_time_ && time - *last_time_ <= 1e-14 * (1 + time));
     last_time_ = time;
     shift_ = rates_before_;
     jump(shift_);
@@ -299,7 +300,7 @@ class SettledSaltation {
   }
   // Multiplies a change by it. by_force: the derivative of f at that time by what is changed.
   void apply(ChangeOfState& s, double by_force) const {
-    double earlier = 0;  // by which the event comes
+    double earlier = 0;  // by how much the event comes earlier after this change
     for (const Condition& each : conditions_)
       earlier += each.change(s, by_force) / double(conditions_.size());
     jump(s);
@@ -332,14 +333,17 @@ class SettledSaltation {
     }
   }
   void find_conditions(double time) {
+    all_stay_ = false;
     for (const MotionChain::Impact& impact : now_.impacts)
       conditions_.push_back({index_of_y(std::size_t(impact.damper)), impact.w});
     if (!conditions_.empty()) return;
     // Stops (M13.29), (M13.30).
+    all_stay_ = true;
     for (std::size_t i = 0; i < now_.masses.size(); ++i) {
       const MassesAlongRun::Mass& mass = now_.masses[i];
       const bool stops = mass.slides_before != 0 && (mass.wall != 0 || mass.slides == -mass.slides_before);
       if (!stops) continue;
+      all_stay_ = all_stay_ && mass.wall != 0;
       const OfDamper& its = of_.dampers[i];
       const double rate = rates_before_[index_of_w(i)];
       conditions_.push_back({index_of_w(i), rate});
@@ -351,15 +355,17 @@ class SettledSaltation {
       if (!(stop_margin && *stop_margin <= margin)) stop_margin = margin;
     }
     if (!conditions_.empty()) return;
-    // Releases (M13.31), at which the rates jump only where phi_s > phi (M13.32).
+    // Releases (M13.31), at which the rates jump only where phi_s > phi (M13.32). Whoever is let go at one
+    // instant, it is the same condition.
     const double damping = 2 * of_.zeta;
     const double rate = of_.force.amplitude * of_.force.frequency * of_.force.phase(time).cos -
                         damping * rates_before_[1] - rates_before_[0];
     for (std::size_t i = 0; i < now_.masses.size(); ++i) {
       const MassesAlongRun::Mass& mass = now_.masses[i];
       const OfDamper& its = of_.dampers[i];
-      if (mass.wall_before != 0 && mass.wall == 0 && its.holding > its.friction)
-        conditions_.push_back({0, rate, damping});
+      if (mass.wall_before == 0 || mass.wall != 0 || !(its.holding > its.friction)) continue;
+      conditions_.push_back({0, rate, damping});
+      break;
     }
   }
   // Multiplies a change by the derivative D of the jump, (M13.23) and (M13.24).
@@ -388,6 +394,7 @@ class SettledSaltation {
   const MassesAlongRun& now_;
   std::vector<double> gain_, share_;  // nu (1+e) of those with an impulse, nu of those that join; over masses
   std::vector<Condition> conditions_;
+  bool all_stay_ = false;  // the event is stops of masses that are held from then on, in whatever order
   double mass_before_ = 1;
   std::optional<double> last_time_;
   ChangeOfState rates_before_, rates_after_, shift_;  // F^-, F^+ and F^+ - D F^-
