@@ -65,6 +65,15 @@ TEST_CASE("what is not said of a scene in units is at rest, undamped, unforced a
   CHECK(dimensionless(scene) == expected);
 }
 
+TEST_CASE("an impact speed below 0 is rejected before it becomes 0 by rounding") {
+  SceneInUnits scene = mast();
+  scene.dampers[0].restitution_by_speed = {{-5e-324, 0.5}};
+  const std::vector<Problem> problems = problems_of(scene);
+  REQUIRE(problems.size() == 1);
+  CHECK(problems[0].field == "restitution");
+  CHECK(problems[0].message == "must have speeds >= 0, got -5e-324");
+}
+
 TEST_CASE("a motion in units obeys the equations with their units") {
   // Until the secondary mass meets a wall the primary mass is alone: M x'' + C x' + K x = F sin(2 pi f t).
   // Its closed form in millimetres and seconds, from rest, against the run of the dimensionless scene.

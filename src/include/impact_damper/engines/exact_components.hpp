@@ -409,9 +409,9 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
     if (masses_.u1[i] < 0) masses_.u1[i] = 0;  // by rounding
   }
 
-  // Decides who is held: of the masses at rest those that can be. Which these are does not depend on the
-  // order in which it is found: always the first one that contradicts its state changes it, which ends
-  // (18.8). Then a mass at rest on its wall enters it or leaves it.
+  // Decides who is held: of the masses at rest those that can be. Always the first one that contradicts its
+  // state changes it, which ends; with static friction equal to friction there is one answer only (18.8).
+  // Then a mass at rest on its wall enters it or leaves it.
   void settle() {
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       Mass& mass = each_[i];

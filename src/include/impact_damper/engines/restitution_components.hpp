@@ -273,8 +273,9 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
       const auto [du, du1] = gained(i, t, now);
       rounding_of_w_[i] = 16 * std::numeric_limits<Real>::epsilon() *
                           (absolute(masses_.u1[i]) + absolute(now.dv) + absolute(pull(i)) * t);
-      if (is_in_fluid(i) && observer_.wants_energy())
-        by_drag_[i] += masses_.nu[i] * drag_[i] * motion.integral_of_ww(i, t);
+      if constexpr (in_fluid)
+        if (is_in_fluid(i) && observer_.wants_energy())
+          by_drag_[i] += masses_.nu[i] * drag_[i] * motion.integral_of_ww(i, t);
       masses_.u[i] += du;
       masses_.u1[i] += du1;
       if (slides_[i] == 0) continue;

@@ -1,6 +1,8 @@
-// The masses of a scene with drag, by power series in pieces (docs/mathematics.md, 18.5): x, and the -q of
-// each mass that slides in a fluid, which takes the place of x in (M18.8), with k = 0. The members are those
-// of ShiftedMotion.
+// A piece of the motion of a scene with drag, between rigid walls, by the power series of (M18.20) with K = 0
+// (docs/mathematics.md, 18.5). By (M18.8) a secondary mass moves in its cavity by the displacement of x and a
+// constant pull k. In a fluid the same holds with k = 0 and -q in place of x, q being by how much y has grown
+// since the piece began: so each mass has something that drives it, x or -q. What the engine asks for it asks
+// ShiftedMotion for as well.
 #pragma once
 
 #include <array>
@@ -17,11 +19,12 @@ namespace impact_damper {
 
 template <class Real, class Force>
 class MotionInFluid {
-  using Piece = JointContact<Real, Force, true>;
+  using Piece = JointContact<Real, Force, true>;  // with components
 
  public:
-  // Begins a piece. fluid: the masses that slide in a fluid, with K = q = 0; its_number[i]: that of the i-th
-  // secondary mass among these, from 1 on, or 0. forces must outlive the piece.
+  // Begins a piece. fluid: the masses that slide in a fluid, as walls that do not push: K = 0, and q = 0 now.
+  // its_number[i]: of the i-th secondary mass, 1 + its index in `fluid`, or 0 if it is not there. forces must
+  // outlive the piece.
   void begin(const System<Real, Force>& system, const Real& time, const Real& x, const Real& v,
              const std::vector<PushedWall<Real>>& fluid, const std::vector<std::size_t>& its_number,
              const ConstantForces<Real>& forces) {
@@ -34,34 +37,38 @@ class MotionInFluid {
       all_.push_back({piece_.of_mass(n, Real(-1), 0), piece_.of_mass(n, Real(-1), 2)});
   }
 
+  // The motion (motion.hpp) of x alone.
   const Piece& of_x() const { return piece_; }
   const Real& length() const { return piece_.length(); }
-  Real rate() const { return piece_.rate(); }
-  // How long bounds hold.
-  const Real& span(const Real&) const { return piece_.length(); }
+  Real rate() const { return piece_.rate(); }  // (M17.17)
+  // How long bounds hold, of a time that is asked for: for the whole piece, beyond which no search goes.
+  const Real& span(const Real& /*asked*/) const { return piece_.length(); }
   Displacement<Real> displacement(const Real& t) const { return piece_.change(t); }
-  // The displacement that moves the i-th mass; x_now: that of x.
+  // The displacement of what drives the i-th mass; x_now: that of x.
   Displacement<Real> of_mass(std::size_t i, const Real& t, const Displacement<Real>& x_now) const {
     return number_[i] == 0 ? x_now : piece_.change(all_[number_[i]].function, t);
   }
-  // The integral of w^2 over [0, t] for a mass in a fluid; 0 for others.
-  Real integral_of_ww(std::size_t i, const Real& t) const {
-    return number_[i] == 0 ? Real(0) : piece_.integral_of_ww(number_[i] - 1, t);
-  }
+  // The integral of y'^2 over [0, t] of the i-th mass, which must be in a fluid: what drag takes, by nu d.
+  Real integral_of_ww(std::size_t i, const Real& t) const { return piece_.integral_of_ww(number_[i] - 1, t); }
+  // x''' at the beginning, and bounds on the derivatives of x and of what drives the i-th mass; order: 0
+  // to 5.
   Real third() { return piece_.begins(all_[0].second, 1); }
-  Real bound(std::size_t order, const Real&) { return bound(all_[0], order); }
-  Real bound_of_mass(std::size_t i, std::size_t order, const Real&) { return bound(all_[number_[i]], order); }
+  Real bound(std::size_t order, const Real& /*span*/) { return bound(all_[0], order); }
+  Real bound_of_mass(std::size_t i, std::size_t order, const Real& /*span*/) {
+    return bound(all_[number_[i]], order);
+  }
 
-  // All at one instant: see ShiftedMotion::Now.
+  // What drives each mass at one instant, as ShiftedMotion::Now. One in use at a time, until begin().
   class Now;
 
  private:
   struct Part {
     typename Piece::Function function, second;  // second: its second derivative
-    std::array<Real, 6> bounds{Real(-1), Real(-1), Real(-1), Real(-1), Real(-1), Real(-1)};
-    Real time{-1};  // for which these hold:
+    std::array<Real, 6> bounds{Real(-1), Real(-1), Real(-1),
+                               Real(-1), Real(-1), Real(-1)};  // -1: not made yet
+    Real time{-1};                                             // of displacement and jet
     Displacement<Real> displacement{};
-    Jet<Real> jet{};  // of `second`
+    Jet<Real> jet{};  // of `second`: its g, g1 and g2 are derivatives of the orders 2, 3 and 4
   };
   Real bound(Part& part, std::size_t order) {
     if (part.bounds[order] < 0)
@@ -72,7 +79,7 @@ class MotionInFluid {
 
   Piece piece_;
   std::vector<std::size_t> number_;
-  std::vector<Part> all_;  // x, then the masses in a fluid
+  std::vector<Part> all_;  // x, then -q of each mass in a fluid: number_ is the index
 };
 
 template <class Real, class Force>
@@ -87,7 +94,7 @@ class MotionInFluid<Real, Force>::Now {
       part.jet = motion.piece_.enclosure(part.second, t).whole;
     }
     const Displacement<Real>& displacement() const { return part_.displacement; }
-    // order: 2, 3 or 4
+    // The derivative of this order: 2, 3 or 4.
     const Real& operator[](std::size_t order) const {
       return order == 2 ? part_.jet.g : order == 3 ? part_.jet.g1 : part_.jet.g2;
     }

@@ -38,12 +38,10 @@ class ShiftedMotion : public WithoutContact<ShiftedMotion<Real, Force>, Real> {
     if (rest_ != 0) now.x = t * primary_.rate() < 2 ? Real(x0_ + (v0_ * t + now.dx)) : Real(rest_ + now.x);
     return now;
   }
-  // The displacement that moves the i-th mass by (M18.8): that of x. Nothing resists by w, so no w^2 is asked
-  // for.
+  // The displacement of what drives the i-th mass by (M18.8): that of x.
   Displacement<Real> of_mass(std::size_t, const Real&, const Displacement<Real>& x_now) const {
     return x_now;
   }
-  Real integral_of_ww(std::size_t, const Real&) const { return Real(0); }
 
   // x at one instant, what moves each mass, which is x as well, and bounds on its derivatives, each made when
   // it is first asked for.
