@@ -657,20 +657,20 @@ TEST_CASE(
   const Run run = simulate({.x0 = 3, .until_amplitude = 2}, Exact{}, {});
   Figure figure = loss_figure(LossOrdinate::amplitude_times);
   std::vector<Table> members;
-  FigureRun source{"decay.json", run};
+  FigureRun decay{"decay.json", run};
   for (const Scene& scene : ensemble_of(run.scene, {.members = 4})) {
     const Run member = simulate(scene, Exact{}, {});
     members.push_back(table_of(figure, member));
-    if (members.size() > 1) source.others.push_back(member);
+    if (members.size() > 1) decay.others.push_back(member);
   }
   CHECK(members_shown(figure, "decay") == 0);
   figure.curves[0].ensemble = 5;
   CHECK(members_shown(figure, "decay") == 5);
   CHECK(members_shown(figure, "another") == 0);
-  CHECK_THROWS_WITH_AS(figure_table(figure, {{"decay", source}}),
+  CHECK_THROWS_WITH_AS(figure_table(figure, {{"decay", decay}}),
                        "figure 8: decay.json: has 4 of the 5 members of its ensemble", InputError);
   figure.curves[0].ensemble = 4;
-  const Table table = figure_table(figure, {{"decay", source}});
+  const Table table = figure_table(figure, {{"decay", decay}});
   const TableBlock& band = block(table, "band-1");
   const double from = std::ranges::min(column(block(table, "curve-1"), 1));
   double last_step = 0;

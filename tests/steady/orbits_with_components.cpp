@@ -190,8 +190,9 @@ TEST_CASE("a branch of orbits with friction is followed, with the amplitudes of 
 
 TEST_CASE("the nearest miss with friction or weight is that of densely sampled runs") {
   int turned = 0, stopped = 0;
-  for (const auto& [friction, weight] : std::vector<std::array<double, 2>>{
+  for (const std::array<double, 2>& components : std::vector<std::array<double, 2>>{
            {0, 0.06}, {0, 0.2}, {0.15, 0}, {0.15, 0.06}, {0.5, 0}, {0.5, 0.2}}) {
+    const double friction = components[0], weight = components[1];
     for (const double frequency : {0.6, 0.8, 0.95, 1.1, 1.4}) {
       Scene scene = sliding(friction > 0 ? 0.6 : 0, weight, friction);
       scene.force_frequency = frequency;
