@@ -19,7 +19,7 @@ PACKAGES := g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev 
 # What the tests need beside these.
 CHECK_PACKAGES := git doctest-dev libboost-dev libmpfr-dev python3 python3-jsonschema python3-yaml clang llvm lld libclang-rt-dev \
   locales clang-tidy cppcheck gcovr valgrind pandoc chromium groff-base pkgconf zsh fish doxygen \
-  pybind11-dev python3-dev python3-numpy libhdf5-dev hdf5-tools
+  pybind11-dev python3-dev python3-numpy libhdf5-dev hdf5-tools libsndfile1-dev
 # What the report is made of, and what its PDF is set with.
 PAPER_PACKAGES := python3 pandoc latexmk texlive-latex-base texlive-latex-recommended lmodern
 # What the bench's references and peers are made of.

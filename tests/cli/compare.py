@@ -76,6 +76,16 @@ text, of_acceleration = compare("acceleration.csv", "--fit", "none")
 demand("they may err by 4 %" in text, text)
 demand("fit" not in of_acceleration, "nothing was to be fitted")
 demand_valid("comparison", of_acceleration, "without a fit")
+# A velocity, as a table calculation writes it: no head, semicolons, decimal commas.
+write("velocity.txt", "".join(f"{t};{float(x) * omega / 10:.5f}\n".replace(".", ",") for t, x in rows if x))
+text, of_velocity = compare("velocity.txt", "--fit", "none", "--time", "1:s", "--column", "2:cm/s")
+demand("column 2 as velocity in cm/s; time in column 1 in s; semicolons between cells, decimal commas" in text, text)
+demand("they may err" not in text, text)
+demand_valid("comparison", of_velocity, "of a velocity")
+# The local frequency lies within 1 % of the mean one.
+for quantity, other, power in (("acceleration", of_acceleration, 2), ("velocity", of_velocity, 1)):
+    amplitudes = [each["half_cycles"]["amplitude"][0] for each in (found, other)]
+    demand(abs(amplitudes[1] / amplitudes[0] - 1) < 0.01 * power, f"{quantity}: {amplitudes[1]} mm in place of {amplitudes[0]} mm")
 
 # Interrupted, it leaves nothing behind.
 (folder / "out.json").unlink()

@@ -22,7 +22,7 @@ constexpr double hertz = 4, omega = 2 * std::numbers::pi * hertz, zeta = 0.01, l
 
 struct Made {
   double noise = 0, duration = 15;
-  bool acceleration = false;
+  MeasuredQuantity quantity = MeasuredQuantity::displacement;
   double time_factor = 1;
   double samples_per_second = rate;
   std::function<double(double, double)> changed = [](double, double x) { return x; };  // of t, x
@@ -34,14 +34,16 @@ MeasuredRecord made(const Made& m) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
   MeasuredRecord record;
-  if (m.acceleration) record.quantity = MeasuredQuantity::acceleration;
+  record.quantity = m.quantity;
   for (int i = 0; i < int(m.duration * m.samples_per_second); ++i) {
     const double t = i / m.samples_per_second;
-    double x = displacement(t);
-    if (m.acceleration) {  // (i omega - zeta omega)^2, real part
-      const double phase = omega * t - 1, decay = largest * std::exp(-zeta * omega * t) * omega * omega;
-      x = decay * ((zeta * zeta - 1) * std::cos(phase) + 2 * zeta * std::sin(phase));
-    }
+    // Each derivative is one times i omega - zeta omega; of it the real part.
+    const double phase = omega * t - 1, decay = largest * std::exp(-zeta * omega * t);
+    const double x =
+        m.quantity == MeasuredQuantity::displacement ? displacement(t)
+        : m.quantity == MeasuredQuantity::velocity
+            ? -decay * omega * (std::sin(phase) + zeta * std::cos(phase))
+            : decay * omega * omega * ((zeta * zeta - 1) * std::cos(phase) + 2 * zeta * std::sin(phase));
     const double value = m.changed(t, x + m.noise * normal(random));
     if (m.missing(t)) continue;
     record.time.push_back(t * m.time_factor);
@@ -160,11 +162,13 @@ TEST_CASE("a wrong sampling rate is a wrong frequency, and changes no loss facto
   CHECK(loss_error(r) < 1e-2);
 }
 
-TEST_CASE("accelerations become displacements by the local frequency") {
-  const Reduction r = reduced("r", made({.acceleration = true}));
-  for (std::size_t i = 0; i < r.time.size(); ++i) {
-    const double expected = largest * std::exp(-zeta * omega * r.time[i]);
-    CHECK(std::abs(r.amplitude[i] / expected - 1) < 2e-3);
+TEST_CASE("velocities and accelerations become displacements by the local frequency") {
+  for (const MeasuredQuantity quantity : {MeasuredQuantity::velocity, MeasuredQuantity::acceleration}) {
+    const Reduction r = reduced("r", made({.quantity = quantity}));
+    for (std::size_t i = 0; i < r.time.size(); ++i) {
+      const double expected = largest * std::exp(-zeta * omega * r.time[i]);
+      CHECK(std::abs(r.amplitude[i] / expected - 1) < 2e-3);
+    }
   }
 }
 

@@ -44,6 +44,7 @@ std::string summary_of(const Comparison& c) {
   std::string text =
       filled("{}: {}, {} samples in {} s, {} Hz\n", fs::path(c.record_name).filename().string(),
              name_of(c.record.quantity), r.samples, text_of(r.duration), text_of(r.sampling_rate, 4)) +
+      filled("  {}\n", c.record.read_as) +
       filled("  {} half cycles at {} Hz, from {} to {} mm{}\n", r.time.size(), text_of(r.frequency, 4),
              text_of(r.amplitude.front()), text_of(r.amplitude.back()),
              r.ends_in_noise ? ", below which noise is too strong" : "") +
@@ -131,7 +132,10 @@ Drawing drawing_of(const Comparison& c, const std::string& name, const std::stri
 
 int compare(Arguments& arguments) {
   const auto measured =
-      arguments.required_file("--measured", "the record, a CSV file with the columns t_s and x_mm");
+      arguments.required_file("--measured", "the record, as CSV with the columns t_s and x_mm");
+  RecordOptions reading{arguments.text("--column"), arguments.text("--time"),
+                        arguments.number("--rate", above(0)), arguments.text("--sensitivity")};
+  if (reading.time && reading.rate) arguments.reject("--rate", "cannot be used with --time");
   const auto scene_name = arguments.text("--scene");
   if (!scene_name) arguments.reject("--scene", "must be given: the scene that the record is compared with");
   ComparisonOptions options;
@@ -154,7 +158,7 @@ int compare(Arguments& arguments) {
         std::vector{*scene_name + ": /exciting_force: must be 0 or left out, only free decays are compared"});
   prepare_output(output);
   if (figures) require_gnuplot();
-  const MeasuredRecord record = read_measured_record(*measured);
+  const MeasuredRecord record = read_measured_record(*measured, reading);
   ProgressOnStderr progress("compare");
   const Comparison comparison = saying_options([&] {
     return compared(*measured, record, *scene_name, *file.in_units, engine, options, std::ref(progress));
@@ -178,8 +182,14 @@ Command compare_command() {
       .description =
           "Compare a measured free decay with the simulation of a scene, and fit the scene's numbers to it.",
       .options = together({{input_option("--measured", "FILE",
-                                         "the record, CSV: time t_s or t_ms; displacement x_mm, x_m or x_um, "
-                                         "or\nacceleration a_m_per_s2, a_mm_per_s2 or a_g"),
+                                         "the record: rows of numbers below heads with units, as time (s) and "
+                                         "x_mm, or as most\ninstruments write them; UFF 58; WAV (docs/compare.md)"),
+                            {"--column", "N|NAME[:UNIT]",
+                             "the column with the motion, where several could be it, and its unit where no "
+                             "head\ntells it: 3:mm, or m, um, in, mm/s, m/s^2, g, V and so on"},
+                            {"--time", "N|NAME[:UNIT]", "the column with the time: 1:ms, or s, us"},
+                            {"--rate", "HZ", "samples in a second, in place of a column with the time"},
+                            {"--sensitivity", "S", "of a record in volts, counts or full scale (FS): 100 mV/g"},
                             input_option("--scene", "FILE", "the scene, in units and without a force"),
                             {"--fit", "LIST",
                              "what is fitted, with commas between: restitution, damping_ratio, "

@@ -90,8 +90,9 @@ void remark_on_frequency(Comparison& c) {
       "scene's mass or stiffness. Loss factors are per radian of the record's own oscillation, so a wrong "
       "sampling rate does not change them{}.",
       text_of(f), text_of(f / nearest),
-      c.record.quantity == MeasuredQuantity::acceleration
-          ? ", but it changes the displacements that are made of accelerations: nothing is fitted"
+      c.record.quantity != MeasuredQuantity::displacement
+          ? filled(", but it changes the displacements that are made of this {}: nothing is fitted",
+                   name_of(c.record.quantity))
           : ""));
 }
 
@@ -198,7 +199,7 @@ std::string comparison_text(const Comparison& c) {
   out.field("schema", std::string_view("impact-damper/comparison/1"));
   const Reduction& r = c.reduction;
   out.object("record", Layout::one_line, "file", c.record_name, "quantity", name_of(c.record.quantity),
-             "samples", r.samples, "empty_cells", c.record.empty_cells, "duration", r.duration,
+             "read_as", c.record.read_as, "samples", r.samples, "empty_cells", c.record.empty_cells, "duration", r.duration,
              "sampling_rate", r.sampling_rate);
   out.object("reduction", Layout::one_line, "frequency", r.frequency, "noise", r.noise, "offset", r.offset,
              "drift", r.drift, "clipped", r.clipped, "in_gaps", r.in_gaps, "unclear", r.unclear,

@@ -1,45 +1,14 @@
-// Measured decays: reading a record, and the amplitudes of its half cycles (docs/mathematics.md, chapter 16).
+// The amplitudes of a measured decay's half cycles (docs/mathematics.md, chapter 16).
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "impact_damper/base/enumeration.hpp"
-#include "impact_damper/base/text.hpp"
+#include "application/measured/record.hpp"
 #include "impact_damper/run.hpp"
 
 namespace impact_damper {
-
-// A measured free decay as a CSV file (RFC 4180): a header that names two columns with their units, then a
-// row for each sample, in the order of time,
-//
-//   t_s,x_mm
-//   0.000,59.82
-//   0.005,59.61
-//
-// Time is t_s or t_ms. The other column is the displacement of the primary mass, x_m, x_mm or x_um, or its
-// acceleration, a_m_per_s2, a_mm_per_s2 or a_g. An empty second cell is a sample that is missing.
-enum class MeasuredQuantity { displacement, acceleration };
-std::string_view unit_of(MeasuredQuantity quantity);  // "mm", "mm/s^2"
-
-struct MeasuredRecord {
-  MeasuredQuantity quantity = MeasuredQuantity::displacement;
-  std::vector<double> time;      // s, strictly ascending
-  std::vector<double> value;     // mm or mm/s^2
-  std::int64_t empty_cells = 0;  // rows without a value, which are left out of the columns
-};
-
-inline constexpr FileKind measured_kind{"measured record", std::size_t{1} << 26};
-inline constexpr std::size_t least_samples = 64;
-
-// Throws IoError if `file` cannot be read, InputError, with a line for each of the first problems, if it is
-// not as above or has fewer than `least_samples` values. These lines begin with the name of the file, or
-// `name`.
-MeasuredRecord read_measured_record(const std::filesystem::path& file);
-MeasuredRecord parse_measured_record(const std::string& name, std::string_view text);
 
 // Samples or half cycles in a row: from `first` to the one before `end`.
 struct IndexRange {
@@ -54,10 +23,10 @@ struct Reduction {
   std::vector<double> error;             // standard error of `amplitude` by the noise, mm
   std::vector<std::int64_t> half_cycle;  // number of the half cycle from 0; those left out count, too
   double frequency = 0;                  // Hz, mean over these half cycles
-  double noise = 0;          // standard deviation of a sample about the fitted sinusoids, mm or mm/s^2
-  double offset = 0;         // mean of the middle line about which the mass swings, mm or mm/s^2
-  double drift = 0;          // largest minus smallest value of the middle line
-  double duration = 0;       // of the record, s
+  double noise = 0;     // standard deviation of a sample about the fitted sinusoids, in the record's unit
+  double offset = 0;    // mean of the middle line about which the mass swings, likewise
+  double drift = 0;     // largest minus smallest value of the middle line
+  double duration = 0;  // of the record, s
   double sampling_rate = 0;  // Hz, 1 / the median step
   std::int64_t samples = 0;
   // Half cycles left out, by reason, before the decay ends in the noise.

@@ -116,6 +116,15 @@ std::string NumberRange::describe(std::string_view kind) const {
   return text;
 }
 
+bool is_utf8(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t length = character_length(text);
+    if (length == 0) return false;
+    text.remove_prefix(length);
+  }
+  return true;
+}
+
 std::string cut(std::string_view text, std::size_t most) {
   std::string line;
   std::size_t at = 0;

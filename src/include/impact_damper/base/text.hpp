@@ -31,6 +31,7 @@ struct FileKind {
   std::size_t most_bytes;
 };
 
+bool is_utf8(std::string_view text);
 // Returns `text` on one line of UTF-8, with a question mark for each byte that is no character and each
 // control character. If it is longer than `most` characters: its first `most`, then "...".
 std::string cut(std::string_view text, std::size_t most = 60);
