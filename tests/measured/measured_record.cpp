@@ -221,6 +221,17 @@ TEST_CASE("records are read as instruments write them") {
           "r.csv: column 1 has no unit: give --column 1:mm, or m/s, g, V and so on\n"
           "r.csv: has no column with a unit of time: give --time N:s, or ms or us, or --rate in Hz");
   }
+  SUBCASE("a part of it") {
+    const MeasuredRecord part = parse_measured_record(
+        "r.csv", made("t_s,x_mm\n", [&](double t, double x) { return n(t) + "," + n(x) + "\n"; }),
+        {.from = 2, .to = 18});
+    REQUIRE(part.time.size() == 65);
+    CHECK(part.time.front() == 2);
+    CHECK(part.time.back() == 18);
+    CHECK(part.read_as ==
+          "column 2, \"x_mm\", as displacement in mm; time in column 1 in s; from 2 s; to 18 s; commas "
+          "between cells");
+  }
   SUBCASE("what no unit is does not become one") {
     for (const char* const head : {"x_furlong", "x (kg)", "displacement", "x_s2"})
       CHECK(problem_of(made("t_s," + std::string(head) + "\n", [&](double t, double x) {

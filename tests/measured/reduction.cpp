@@ -162,6 +162,71 @@ TEST_CASE("a wrong sampling rate is a wrong frequency, and changes no loss facto
   CHECK(loss_error(r) < 1e-2);
 }
 
+TEST_CASE(
+    "of a record with more in it than one decay the largest fall is used, and what is left out is said") {
+  const auto said = [](const Reduction& r) {
+    std::string text;
+    for (const std::string& each : r.outside) text += each + "\n";
+    return text;
+  };
+  const auto is_the_decay = [&](const Reduction& r, double from, double to, double since) {
+    CHECK(r.time.front() >= from);
+    CHECK(r.time.front() < from + 1.5 / hertz);
+    CHECK(r.time.back() > to - 1.5 / hertz);
+    CHECK(r.time.back() <= to);
+    for (std::size_t i = 0; i < r.time.size(); ++i)
+      CHECK(std::abs(r.amplitude[i] / peak(r.time[i] - since) - 1) < 0.01);
+    CHECK(loss_error(r) < 0.02);
+  };
+  // Rocked up for 4 s and let go.
+  const auto up = [](double t, double x) {
+    return t < 4 ? x / std::exp(-zeta * omega * t) * t / 4 : x / std::exp(-zeta * omega * 4);
+  };
+  const Reduction rocked = reduced("r", made({.changed = up}));
+  CHECK(said(rocked).find(" s the amplitude rises, by a factor of ") != std::string::npos);
+  is_the_decay(rocked, 4 - 0.5 / hertz, 15, 4);
+  CHECK(rocked.other_time.size() > 10);
+  CHECK(rocked.other_time.back() < rocked.time.front());
+  // Silence for 3 s, with noise.
+  const Reduction late = reduced(
+      "r",
+      made({.noise = 1e-4, .changed = [](double t, double x) { return t < 3 ? x - displacement(t) : x; }}));
+  CHECK(said(late) == "");
+  is_the_decay(late, 3, 15, 0);
+  // Struck again at 5 s.
+  const auto twice = [](double t, double x) { return t < 5 ? x : x / std::exp(-zeta * omega * 5); };
+  const Reduction second = reduced("r", made({.changed = twice}));
+  CHECK(said(second).find("Before 4.91 s there is another decay, by a factor of 3.") == 0);
+  is_the_decay(second, 5, 15, 5);
+  // The same, the first fall the larger one.
+  const auto weakly = [](double t, double x) { return t < 11 ? x : 3 * x; };
+  const Reduction first = reduced("r", made({.changed = weakly}));
+  CHECK(said(first).find("Behind 1") == 0);
+  CHECK(said(first).find("the amplitude rises again, by a factor of 3.") != std::string::npos);
+  is_the_decay(first, 0, 11, 0);
+  CHECK(first.other_time.front() > first.time.back());
+  // Growing all the time.
+  CHECK_THROWS_WITH_AS(
+      reduced("r", made({.changed = [](double t, double x) { return x * std::exp(2 * zeta * omega * t); }})),
+      doctest::Contains("r: must hold a free decay of at least 12 half cycles"), InputError);
+  // A whole decay is used from its first half cycle to its last.
+  CHECK(reduced("r", made({})).outside.empty());
+  CHECK(reduced("r", made({})).other_time.empty());
+}
+
+TEST_CASE("zeros in place of samples are missing samples") {
+  const Reduction r =
+      reduced("r", made({.changed = [](double t, double x) { return t > 3 && t < 3.7 ? 0 : x; }}));
+  REQUIRE(r.outside.size() == 1);
+  CHECK(r.outside[0].find("142 samples have the value of the one before them") == 0);
+  CHECK(r.in_gaps > 4);
+  CHECK(loss_error(r) < 1e-2);
+  // A value that an instrument cannot exceed is no missing sample.
+  const Reduction clipped =
+      reduced("r", made({.changed = [](double, double x) { return std::min(5.0, std::max(-1000.0, x)); }}));
+  CHECK(clipped.outside.empty());
+}
+
 TEST_CASE("velocities and accelerations become displacements by the local frequency") {
   for (const MeasuredQuantity quantity : {MeasuredQuantity::velocity, MeasuredQuantity::acceleration}) {
     const Reduction r = reduced("r", made({.quantity = quantity}));

@@ -45,7 +45,8 @@ std::string summary_of(const Comparison& c) {
       filled("{}: {}, {} samples in {} s, {} Hz\n", fs::path(c.record_name).filename().string(),
              name_of(c.record.quantity), r.samples, text_of(r.duration), text_of(r.sampling_rate, 4)) +
       filled("  {}\n", c.record.read_as) +
-      filled("  {} half cycles at {} Hz, from {} to {} mm{}\n", r.time.size(), text_of(r.frequency, 4),
+      filled("  {} half cycles at {} Hz, {} to {} s, from {} to {} mm{}\n", r.time.size(),
+             text_of(r.frequency, 4), text_of(r.time.front()), text_of(r.time.back()),
              text_of(r.amplitude.front()), text_of(r.amplitude.back()),
              r.ends_in_noise ? ", below which noise is too strong" : "") +
       filled("  noise {} {}, offset {} {}, drift {} {}; left out: ", text_of(r.noise), unit,
@@ -125,6 +126,7 @@ Drawing drawing_of(const Comparison& c, const std::string& name, const std::stri
   add("measured", "measured",
       is_loss ? Columns{c.loss.amplitude, c.loss.eta, {}}
               : Columns{c.reduction.time, c.reduction.amplitude, {}});
+  if (!is_loss) add("others", "left out", {c.reduction.other_time, c.reduction.other_amplitude, {}});
   add("given", "the scene, simulated", simulated(c.given));
   if (c.fitted) add("fitted", "fitted", simulated(*c.fitted));
   return drawing;
@@ -133,8 +135,11 @@ Drawing drawing_of(const Comparison& c, const std::string& name, const std::stri
 int compare(Arguments& arguments) {
   const auto measured =
       arguments.required_file("--measured", "the record, as CSV with the columns t_s and x_mm");
-  RecordOptions reading{arguments.text("--column"), arguments.text("--time"),
-                        arguments.number("--rate", above(0)), arguments.text("--sensitivity")};
+  RecordOptions reading{arguments.text("--column"),           arguments.text("--time"),
+                        arguments.number("--rate", above(0)), arguments.text("--sensitivity"),
+                        arguments.number("--from"),           arguments.number("--to")};
+  if (reading.from && reading.to && !(*reading.from < *reading.to))
+    arguments.reject("--to", filled("must be > {} s of --from, got {}", *reading.from, *reading.to));
   if (reading.time && reading.rate) arguments.reject("--rate", "cannot be used with --time");
   const auto scene_name = arguments.text("--scene");
   if (!scene_name) arguments.reject("--scene", "must be given: the scene that the record is compared with");
@@ -181,25 +186,28 @@ Command compare_command() {
       .name = "compare",
       .description =
           "Compare a measured free decay with the simulation of a scene, and fit the scene's numbers to it.",
-      .options = together({{input_option("--measured", "FILE",
-                                         "the record: rows of numbers below heads with units, as time (s) and "
-                                         "x_mm, or as most\ninstruments write them; UFF 58; WAV (docs/compare.md)"),
-                            {"--column", "N|NAME[:UNIT]",
-                             "the column with the motion, where several could be it, and its unit where no "
-                             "head\ntells it: 3:mm, or m, um, in, mm/s, m/s^2, g, V and so on"},
-                            {"--time", "N|NAME[:UNIT]", "the column with the time: 1:ms, or s, us"},
-                            {"--rate", "HZ", "samples in a second, in place of a column with the time"},
-                            {"--sensitivity", "S", "of a record in volts, counts or full scale (FS): 100 mV/g"},
-                            input_option("--scene", "FILE", "the scene, in units and without a force"),
-                            {"--fit", "LIST",
-                             "what is fitted, with commas between: restitution, damping_ratio, "
-                             "clearance\n(these are the default), secondary_mass; or none"},
-                            {"--figures", "FOLDER",
-                             "draw amplitude over time and loss factor over amplitude there, "
-                             "as\nmeasured_decay.svg and measured_loss.svg"},
-                            {"-o,--output", "FILE", "write all numbers there, as JSON"},
-                            threads_option()},
-                           engine_options()}),
+      .options =
+          together({{input_option("--measured", "FILE",
+                                  "the record: rows of numbers below heads with units, as time (s) and "
+                                  "x_mm, or as most\ninstruments write them; UFF 58; WAV (docs/compare.md)"),
+                     {"--column", "N|NAME[:UNIT]",
+                      "the column with the motion, where several could be it, and its unit where no "
+                      "head\ntells it: 3:mm, or m, um, in, mm/s, m/s^2, g, V and so on"},
+                     {"--time", "N|NAME[:UNIT]", "the column with the time: 1:ms, or s, us"},
+                     {"--rate", "HZ", "samples in a second, in place of a column with the time"},
+                     {"--sensitivity", "S", "of a record in volts, counts or full scale (FS): 100 mV/g"},
+                     {"--from", "T", "leave out what is before, in s of the record"},
+                     {"--to", "T", "leave out what is behind"},
+                     input_option("--scene", "FILE", "the scene, in units and without a force"),
+                     {"--fit", "LIST",
+                      "what is fitted, with commas between: restitution, damping_ratio, "
+                      "clearance\n(these are the default), secondary_mass; or none"},
+                     {"--figures", "FOLDER",
+                      "draw amplitude over time and loss factor over amplitude there, "
+                      "as\nmeasured_decay.svg and measured_loss.svg"},
+                     {"-o,--output", "FILE", "write all numbers there, as JSON"},
+                     threads_option()},
+                    engine_options()}),
       .footer =
           R"(A decay is chaotic: runs that hardly differ scatter. The fit simulates some 10 000 decays with other numbers, and its
 intervals allow for the scatter as well as for the record's noise (docs/compare.md).

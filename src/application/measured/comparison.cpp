@@ -80,10 +80,11 @@ void remark_on_what_is_left_out(Comparison& c) {
              left_out));
 }
 
-void remark_on_frequency(Comparison& c) {
+// Returns whether the record oscillates as the scene does.
+bool remark_on_frequency(Comparison& c) {
   constexpr double tolerance = 0.02;
   const double f = c.reduction.frequency;
-  if (f >= c.lowest_frequency * (1 - tolerance) && f <= c.highest_frequency * (1 + tolerance)) return;
+  if (f >= c.lowest_frequency * (1 - tolerance) && f <= c.highest_frequency * (1 + tolerance)) return true;
   const double nearest = f < c.lowest_frequency ? c.lowest_frequency : c.highest_frequency;
   c.remarks.push_back(filled(
       "The record oscillates at {} Hz, {} times what the scene does: its sampling rate is wrong, or the "
@@ -94,6 +95,7 @@ void remark_on_frequency(Comparison& c) {
           ? filled(", but it changes the displacements that are made of this {}: nothing is fitted",
                    name_of(c.record.quantity))
           : ""));
+  return false;
 }
 
 void remark_on_fit(Comparison& c) {
@@ -167,10 +169,10 @@ Comparison compared(const std::string& record_name, const MeasuredRecord& record
   c.bins = loss_bins(c.reduction);
   c.highest_frequency = scales_of(scene).of(Dimension::frequency);
   c.lowest_frequency = c.highest_frequency / std::sqrt(1 + dimensionless(scene).damper().mass_ratio);
+  c.remarks = c.reduction.outside;
   tell("simulating the scene");
   c.given = decays_of(scene, engine, c.reduction, c.bins, options);
-  remark_on_frequency(c);
-  const bool can_fit = c.remarks.empty() || record.quantity == MeasuredQuantity::displacement;
+  const bool can_fit = remark_on_frequency(c) || record.quantity == MeasuredQuantity::displacement;
   if (can_fit && !options.fit.parameters.empty()) {
     FitResult result = fit_decay(scene, engine, c.reduction, c.bins, options.fit, tell);
     c.fit = std::move(result.fit);
@@ -199,8 +201,8 @@ std::string comparison_text(const Comparison& c) {
   out.field("schema", std::string_view("impact-damper/comparison/1"));
   const Reduction& r = c.reduction;
   out.object("record", Layout::one_line, "file", c.record_name, "quantity", name_of(c.record.quantity),
-             "read_as", c.record.read_as, "samples", r.samples, "empty_cells", c.record.empty_cells, "duration", r.duration,
-             "sampling_rate", r.sampling_rate);
+             "read_as", c.record.read_as, "samples", r.samples, "empty_cells", c.record.empty_cells,
+             "duration", r.duration, "sampling_rate", r.sampling_rate);
   out.object("reduction", Layout::one_line, "frequency", r.frequency, "noise", r.noise, "offset", r.offset,
              "drift", r.drift, "clipped", r.clipped, "in_gaps", r.in_gaps, "unclear", r.unclear,
              "ends_in_noise", r.ends_in_noise);

@@ -212,6 +212,7 @@ MeasuredRecord record_of(const std::string& name, const Columns& columns, const 
                     at == *last ? "; of a clock that is coarser than the samples give --rate instead" : ""));
     }
     last = at;
+    if ((options.from && at < *options.from) || (options.to && at > *options.to)) continue;
     if (std::isnan(number)) {
       ++record.empty_cells;
       continue;
@@ -236,6 +237,8 @@ MeasuredRecord record_of(const std::string& name, const Columns& columns, const 
   } else {
     record.read_as += filled("; {} samples/s", rate);
   }
+  if (options.from) record.read_as += filled("; from {} s", *options.from);
+  if (options.to) record.read_as += filled("; to {} s", *options.to);
   if (!columns.read_as.empty()) record.read_as += "; " + columns.read_as;
   if (record.empty_cells > 0)
     record.read_as += filled("; {} value{} missing", record.empty_cells, record.empty_cells == 1 ? "" : "s");

@@ -31,6 +31,7 @@ struct RecordOptions {
   std::optional<std::string> column, time;
   std::optional<double> rate;              // Hz, in place of a column of times
   std::optional<std::string> sensitivity;  // of a record in volts, counts or full scale (FS): "100 mV/g"
+  std::optional<double> from, to;          // s, of the record's own time: only these samples
 };
 
 inline constexpr FileKind measured_kind{"measured record", std::size_t{1} << 26};

@@ -278,7 +278,7 @@ bool are_neighbours(const Candidate& a, const Candidate& b) {
 
 // Finds the middle line by (M16.2), and from it the amplitudes. A candidate becomes unclear if the line is
 // known nowhere near it.
-void find_middle_line(std::vector<Candidate>& all) {
+void find_middle_line(std::span<Candidate> all) {
   constexpr double reach = 6;  // half cycles to either side
   constexpr std::size_t least_line = 5;
   std::vector<double> time, middle;
@@ -310,6 +310,95 @@ void find_middle_line(std::vector<Candidate>& all) {
     here.middle = mean - (end - first >= least_line ? products / squares * mean_time : 0);
     here.amplitude = std::abs(here.fit.value - here.middle);
   }
+}
+
+constexpr double rise = 1.25;  // a larger one is none of noise and impacts
+
+// A part of the record in which the amplitude falls: half cycles `first` to the one before `end`. Before that
+// it may rise, from `begin` on.
+struct Fall {
+  std::size_t begin = 0, first = 0, end = 0;
+  double factor = 1;  // by which the amplitude falls
+};
+// Divides half cycles into falls. One ends at its least amplitude if two after it are larger by a quarter and
+// by more than `least`, the noise: somebody has struck the structure again. Amplitudes below count as that.
+std::vector<Fall> falls_of(const std::vector<Candidate>& all, const std::vector<std::size_t>& good,
+                           double least) {
+  const auto amplitude = [&](std::size_t i) { return std::max(all[good[i]].amplitude, least); };
+  std::vector<Fall> falls;
+  std::size_t begin = 0, top = 0, bottom = 0;
+  const auto close = [&](std::size_t next) {
+    falls.push_back({begin, top, bottom + 1, amplitude(top) / amplitude(bottom)});
+    begin = top = bottom = next;
+  };
+  const auto is_above = [&](std::size_t i) { return amplitude(i) > rise * amplitude(bottom) + least; };
+  for (std::size_t i = 1; i < good.size(); ++i) {
+    if (amplitude(i) > amplitude(top) && amplitude(top) < rise * amplitude(bottom)) {
+      top = bottom = i;
+    } else if (amplitude(i) < amplitude(bottom)) {
+      bottom = i;
+    } else if (is_above(i) && (i + 1 == good.size() || is_above(i + 1))) {
+      close(bottom + 1);
+      i = begin;
+    }
+  }
+  if (!good.empty()) close(good.size());
+  return falls;
+}
+
+// Returns the candidates of the decay: of all falls that by the largest factor. Adds a sentence on each part
+// that is left out.
+IndexRange find_decay(const std::vector<Candidate>& all, double least, std::vector<std::string>& outside) {
+  std::vector<std::size_t> peaks;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].kind == Kind::good) peaks.push_back(i);
+  const std::vector<Fall> falls = falls_of(all, peaks, least);
+  if (falls.empty()) return {0, all.size()};
+  const auto chosen = std::size_t(std::ranges::max_element(falls, {}, &Fall::factor) - falls.begin());
+  Fall decay = falls[chosen];
+  if (decay.first > decay.begin) {
+    // It rises before. Peaks that the instrument has cut are higher than those to either side of them.
+    for (std::size_t i = decay.first + 1; i < decay.end; ++i)
+      if (rise * all[peaks[i]].amplitude > all[peaks[decay.first]].amplitude &&
+          std::any_of(all.begin() + std::ptrdiff_t(peaks[i - 1]), all.begin() + std::ptrdiff_t(peaks[i]),
+                      [](const Candidate& each) { return each.kind == Kind::clipped; }))
+        decay.first = i;
+  }
+  const bool rises = decay.first > decay.begin, follows = chosen > 0, goes_on = chosen + 1 < falls.size();
+  const auto when = [&](std::size_t peak) { return rounded_text(all[peaks[peak]].fit.time, 3) + " s"; };
+  const auto ratio = [&](std::size_t peak, std::size_t of) {
+    return rounded_text(all[peaks[peak]].amplitude / all[peaks[of]].amplitude, 3);
+  };
+  if (follows)
+    outside.push_back(filled("Before {} there is another decay, by a factor of {}: it is left out.",
+                             when(decay.begin), rounded_text(falls[chosen - 1].factor, 3)));
+  else if (rises)
+    outside.push_back(filled("Until {} the amplitude rises, by a factor of {}: that is left out.",
+                             when(decay.first), ratio(decay.first, decay.begin)));
+  if (goes_on)
+    outside.push_back(
+        filled("Behind {} the amplitude rises again, by a factor of {}: what follows is left out.",
+               when(decay.end - 1), ratio(falls[chosen + 1].first, decay.end - 1)));
+  // A peak beside such a change may have part of it.
+  return {rises || follows ? peaks[decay.first] + 1 : 0, goes_on ? peaks[decay.end - 1] : all.size()};
+}
+
+// Returns the record without rows of equal values that last for half a half cycle or longer, as an instrument
+// writes them in place of samples that are missing, but for those at its limits; absent if it has none.
+std::optional<MeasuredRecord> without_rows(const MeasuredRecord& record, double half_cycle, double until) {
+  const auto [low, high] = std::ranges::minmax(record.value);
+  MeasuredRecord kept = record;
+  kept.time.clear(), kept.value.clear();
+  for (std::size_t i = 0, next = 0; i < record.value.size(); i = next) {
+    while (next < record.value.size() && record.value[next] == record.value[i]) ++next;
+    const bool is_limit = record.value[i] == low || record.value[i] == high;
+    if (!is_limit && record.time[i] < until && record.time[next - 1] - record.time[i] > half_cycle / 2)
+      continue;
+    for (std::size_t k = i; k < next; ++k)
+      kept.time.push_back(record.time[k]), kept.value.push_back(record.value[k]);
+  }
+  if (kept.time.size() == record.time.size()) return std::nullopt;
+  return kept;
 }
 
 }  // namespace
@@ -345,6 +434,14 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record) {
     const std::size_t first = i < around ? 0 : i - around, last = std::min(i + around, intervals.size());
     return median_of({intervals.begin() + std::ptrdiff_t(first), intervals.begin() + std::ptrdiff_t(last)});
   };
+  if (const auto kept = without_rows(record, median_of(intervals), time[extremes.back().index])) {
+    result = reduced(name, *kept);
+    result.outside.push_back(
+        filled("{} samples have the value of the one before them for so long that they "
+               "count as missing.",
+               time.size() - kept->time.size()));
+    return result;
+  }
   const double least_per_cycle = double(least_window) * half_turn<double>() / half_window;
   if (!(2 * median_of(intervals) / step >= least_per_cycle))
     reject(name, filled("must have at least {} samples in a cycle, got {}", std::ceil(least_per_cycle),
@@ -388,11 +485,16 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record) {
   drop_below_limit(all, result.noise);
   find_middle_line(all);
 
+  const double least = end_in_noise * result.noise;
+  const IndexRange used = find_decay(all, least, result.outside);
+  if (!result.outside.empty()) find_middle_line(std::span(all).subspan(used.first, used.size()));
+
   // Numbers of the half cycles: those without a peak in between are counted by the time that has passed.
-  std::vector<const Candidate*> good;
-  for (Candidate& each : all) {
+  std::vector<Candidate*> good;
+  for (std::size_t i = used.first; i < used.end; ++i) {
+    Candidate& each = all[i];
     if (each.kind == Kind::good) {
-      if (each.amplitude < end_in_noise * result.noise) {
+      if (each.amplitude < least) {
         result.ends_in_noise = true;
         break;
       }
@@ -423,10 +525,10 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record) {
                                                            each.fit.time < good.back()->fit.time;
                                                   }));
 
-  double least = good[0]->middle, greatest = least;
+  double lowest = good[0]->middle, highest = lowest;
   for (std::size_t i = 0; i < good.size(); ++i) {
     const Candidate& each = *good[i];
-    least = std::min(least, each.middle), greatest = std::max(greatest, each.middle);
+    lowest = std::min(lowest, each.middle), highest = std::max(highest, each.middle);
     result.offset += each.middle / double(good.size());
     double factor = 1;
     if (record.quantity != MeasuredQuantity::displacement) {
@@ -441,7 +543,17 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record) {
     result.error.push_back(result.noise * each.fit.value_factor * factor);  // (M16.3)
     result.half_cycle.push_back(each.number);
   }
-  result.drift = greatest - least;
+  result.drift = highest - lowest;
+  if (result.outside.empty()) return result;
+  const double omega = 2 * half_turn<double>() * result.frequency;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].kind != Kind::good || (i >= used.first && i < used.end)) continue;
+    result.other_time.push_back(all[i].fit.time);
+    const double unit = record.quantity == MeasuredQuantity::displacement ? 1
+                        : record.quantity == MeasuredQuantity::velocity   ? omega
+                                                                          : omega * omega;
+    result.other_amplitude.push_back(all[i].amplitude / unit);
+  }
   return result;
 }
 

@@ -34,10 +34,16 @@ struct Reduction {
   std::int64_t in_gaps = 0;  // samples are missing, or it lies at an end of the record
   std::int64_t unclear = 0;  // no single peak, or no middle line
   bool ends_in_noise = false;
+  // The half cycles outside the decay that is used, with their amplitudes in mm by the mean frequency, and a
+  // sentence for each reason why there are any: "Before 2.1 s the amplitude rises, by a factor of 4."
+  std::vector<double> other_time, other_amplitude;
+  std::vector<std::string> outside;
 };
 
-// Returns the half cycles of a record. Throws InputError, naming `name`, if there are fewer than
-// least_samples samples, fewer than 12 half cycles that are used, or too few samples in each.
+// Returns the half cycles of a record's decay: of the part in which the amplitude falls by the largest
+// factor. Equal values one after the other for half a half cycle count as missing. Throws InputError, naming
+// `name`, if there are fewer than least_samples samples, fewer than 12 half cycles that are used, or too few
+// samples in each.
 Reduction reduced(const std::string& name, const MeasuredRecord& record);
 
 // Simulates a free decay with x0 > 0 and returns its peaks by the fit used for records, so that an impact
