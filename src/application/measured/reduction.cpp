@@ -320,10 +320,13 @@ struct Fall {
   std::size_t begin = 0, first = 0, end = 0;
   double factor = 1;  // by which the amplitude falls
 };
-// Divides half cycles into falls. One ends at its least amplitude if two after it are larger by a quarter and
-// by more than `least`, the noise: somebody has struck the structure again. Amplitudes below count as that.
+// Divides half cycles into falls. One ends at its least amplitude if two after it are larger, by a quarter
+// and by more than `least`, the noise, than all of the ten before it: somebody has struck the structure
+// again. A loose mass gives back no more than it has taken in the last few. Amplitudes below `least` count as
+// that.
 std::vector<Fall> falls_of(const std::vector<Candidate>& all, const std::vector<std::size_t>& good,
                            double least) {
+  constexpr std::size_t few = 10;
   const auto amplitude = [&](std::size_t i) { return std::max(all[good[i]].amplitude, least); };
   std::vector<Fall> falls;
   std::size_t begin = 0, top = 0, bottom = 0;
@@ -331,7 +334,11 @@ std::vector<Fall> falls_of(const std::vector<Candidate>& all, const std::vector<
     falls.push_back({begin, top, bottom + 1, amplitude(top) / amplitude(bottom)});
     begin = top = bottom = next;
   };
-  const auto is_above = [&](std::size_t i) { return amplitude(i) > rise * amplitude(bottom) + least; };
+  const auto is_above = [&](std::size_t i) {
+    for (std::size_t k = std::max(top, bottom - std::min(bottom, few)); k <= bottom; ++k)
+      if (!(amplitude(i) > rise * amplitude(k) + least)) return false;
+    return true;
+  };
   for (std::size_t i = 1; i < good.size(); ++i) {
     if (amplitude(i) > amplitude(top) && amplitude(top) < rise * amplitude(bottom)) {
       top = bottom = i;
