@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
+#include "impact_damper/simulate.hpp"
 #include "made_records.hpp"
 
 using namespace impact_damper;
@@ -58,6 +61,32 @@ TEST_CASE("a record by another integrator is fitted by the numbers it was made w
     CHECK_FALSE(each.open_above);
   }
   CHECK(fit().normal_deviate < most_normal_deviate);
+}
+
+TEST_CASE("a region that is near the record by chance does not end the search") {
+  // Decays with e = 0.75 and a mass ratio of 0.08 scatter, those of a small clearance do not.
+  SceneInUnits scene;
+  scene.mass = 30, scene.stiffness = 3600, scene.damping_ratio = 0.0033;
+  scene.damper().secondary_mass = 2.45, scene.damper().clearance = 2.8, scene.damper().restitution = 0.75;
+  scene.damper().secondary_displacement = 0.8;
+  scene.initial_displacement = 13.2, scene.until_seconds = 55;
+  const double time_unit = scales_of(scene).of(Dimension::time), most = 54.9 / time_unit;
+  const Run run = simulate(dimensionless(scene), Restitution{}, {.history = {{0, most, 2501}}});
+  MeasuredRecord record;
+  for (std::size_t i = 0; i < run.history->time.size(); ++i) {
+    record.time.push_back(run.history->time[i] * time_unit);
+    record.value.push_back(std::round(2.8e3 * run.history->x[i]) / 1e3);
+  }
+  const Reduction reduction = reduced("made", record);
+  const FitResult result =
+      fit_decay(scene, Restitution{}, reduction, loss_bins(reduction), {}, [](const std::string&) {});
+  REQUIRE(result.fit);
+  CHECK(result.fit->normal_deviate < most_normal_deviate);
+  for (const FittedParameter& each : result.fit->parameters) {
+    CAPTURE(name_of(each.parameter));
+    CHECK(each.low < value_of(scene, each.parameter));
+    CHECK(each.high > value_of(scene, each.parameter));
+  }
 }
 
 TEST_CASE("the fit does not depend on the number of threads") {

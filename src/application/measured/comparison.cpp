@@ -108,15 +108,18 @@ void remark_on_fit(Comparison& c) {
   for (const FittedParameter& each : fit.parameters) {
     const std::string_view name = name_of(each.parameter);
     const bool is_bounded_by_0 = each.parameter == FitParameter::damping_ratio;
-    if (each.open_below && each.open_above) {
+    const auto [least, most] = std::minmax(each.searched_from, each.searched_to);
+    if (each.open_below && each.open_above && each.low <= least && each.high >= most) {
       c.remarks.push_back(
           filled("The record does not tell {}: the whole searched range agrees with it.", name));
-    } else if (each.open_above || (each.open_below && !is_bounded_by_0)) {
-      c.remarks.push_back(
-          filled("The interval of {} ends where the search did, at {}: it may be longer on that side.", name,
-                 with_unit(text_of(each.open_above ? each.searched_to : each.searched_from),
-                           unit_of(each.parameter))));
+      continue;
     }
+    const auto remark = [&](double end, std::string_view side) {
+      c.remarks.push_back(filled("The interval of {} ends where the search did, at {}: it may be longer {}.",
+                                 name, with_unit(text_of(end), unit_of(each.parameter)), side));
+    };
+    if (each.open_below && !(is_bounded_by_0 && each.low <= least)) remark(each.low, "below");
+    if (each.open_above) remark(each.high, "above");
   }
   constexpr double strong = 0.9;
   for (std::size_t j = 0; j < fit.parameters.size(); ++j) {

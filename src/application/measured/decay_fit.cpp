@@ -399,9 +399,9 @@ struct DecaySampler {
   }
 };
 
-// Returns the box about the fraction `kept` of the points that is nearest to the record, with a margin.
-Box box_of_nearest(const Points& points, const std::vector<LossBin>& bins, const Box& box, double kept) {
-  constexpr double usual_scatter = 0.1, margin = 0.15;
+// Returns the indices of the points, those nearest to the record first.
+std::vector<std::size_t> by_nearness(const Points& points, const std::vector<LossBin>& bins) {
+  constexpr double usual_scatter = 0.1;
   std::vector<std::pair<double, std::size_t>> distances;
   for (std::size_t i = 0; i < points.loss.size(); ++i) {
     double sum = 0;
@@ -412,13 +412,22 @@ Box box_of_nearest(const Points& points, const std::vector<LossBin>& bins, const
     distances.emplace_back(sum, i);
   }
   std::ranges::sort(distances);
-  distances.resize(std::size_t(kept * double(distances.size())));
+  std::vector<std::size_t> order;
+  for (const auto& each : distances) order.push_back(each.second);
+  return order;
+}
+
+// Returns the box about the fraction `kept` of the points that is nearest to the record, with a margin.
+Box box_of_nearest(const Points& points, const std::vector<LossBin>& bins, const Box& box, double kept) {
+  constexpr double margin = 0.15;
+  std::vector<std::size_t> order = by_nearness(points, bins);
+  order.resize(std::size_t(kept * double(order.size())));
   Box next = box;
   for (std::size_t j = 0; j < box.low.size(); ++j) {
     double low = 1, high = 0;
-    for (const auto& each : distances) {
-      low = std::min(low, points.place[each.second][j]);
-      high = std::max(high, points.place[each.second][j]);
+    for (const std::size_t i : order) {
+      low = std::min(low, points.place[i][j]);
+      high = std::max(high, points.place[i][j]);
     }
     const double more = margin * (high - low);
     next.low[j] = std::max(0.0, low - more), next.high[j] = std::min(1.0, high + more);
@@ -549,47 +558,20 @@ std::size_t nodes_for(std::size_t axes) {
   return nodes[axes];
 }
 
-}  // namespace
-
-// --- The fit ----------------------------------------------------------------------------------------------
-
-std::vector<Problem> problems_of_fit(const SceneInUnits& scene, const FitOptions& options) {
-  std::vector<Problem> problems;
-  const auto& chosen = options.parameters;
-  for (auto each = chosen.begin(); each != chosen.end(); ++each)
-    if (std::find(chosen.begin(), each, *each) != each)
-      problems.push_back(
-          {"parameters", filled("must be different, got {} twice", in_quotes(name_of(*each)))});
-  if (options.runs < 1) problems.push_back({"runs", filled("must be >= 1, got {}", options.runs)});
-  if (!(options.level > 0))
-    problems.push_back({"level", filled("must be a number > 0, got {}", options.level)});
-  if (scene.dampers.size() != 1) problems.push_back({"dampers", "must be one damper, without a list"});
-  return problems;
-}
-
-FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduction& reduction,
-                    const std::vector<LossBin>& bins, const FitOptions& options,
-                    const std::function<void(const std::string&)>& tell) {
-  std::vector<Problem> problems = problems_of_fit(scene, options);
-  if (options.parameters.empty()) problems.push_back({"parameters", "at least one must be given"});
-  require_none(problems);
+// Fits in a box, after some stages in each of which it shrinks to the fraction `kept` of the runs that is
+// nearest: while it is wide, no polynomial follows the loss factor. Absent if too few runs pass through the
+// record's amplitudes.
+constexpr double kept = 0.1;
+std::optional<DecayFit> fit_in(DecaySampler& sampler, Box box_to_begin, int coarse_stages) {
+  const FitOptions& options = sampler.options;
+  const std::vector<LossBin>& bins = sampler.bins;
   const std::size_t count = options.parameters.size(), nodes = nodes_for(count);
-  if (bins.size() < count + 1)
-    return {std::nullopt, filled("a fit of {} numbers needs {} ranges of amplitude with a known loss factor, "
-                                 "the record has {}",
-                                 count, count + 1, bins.size())};
-  FitResult none{std::nullopt, "no decay in the searched range passes through the record's amplitudes"};
-  DecaySampler sampler{scene, engine, reduction, bins, options, tell};
-  for (const FitParameter each : options.parameters)
-    sampler.ranges.push_back(searched_range(each, scene, bins));
-  Region region{.box = {Vector(count, 0.0), Vector(count, 1.0)}, .before = {}, .limit = {}};
-  // While the range is wide, no polynomial follows the loss factor. The box shrinks to the nearest runs
-  // instead.
-  constexpr int coarse_stages = 3, most_stages = 9;
-  constexpr double kept = 0.1, generous = 16;  // chi square above its least: four standard deviations
+  Region region{.box = std::move(box_to_begin), .before = {}, .limit = {}};
+  constexpr int most_stages = 9;
+  constexpr double generous = 16;  // chi square above its least: four standard deviations
   for (int stage = 0; stage < coarse_stages; ++stage) {
     const Points points = sampler.points(region, options.runs);
-    if (double(points.loss.size()) * kept < double(4 * count)) return none;
+    if (double(points.loss.size()) * kept < double(4 * count)) return std::nullopt;
     region.box = box_of_nearest(points, bins, region.box, kept);
   }
   std::optional<Emulator> emulator;
@@ -604,7 +586,7 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
   // about the best point is then tried, and the search goes on there if the scatter is less.
   std::optional<Region> stopped;
   for (int stage = 0; stage < most_stages; ++stage) {
-    if (!refine(options.runs)) return none;
+    if (!refine(options.runs)) return std::nullopt;
     if (stopped && !is_less(emulator->scatter, stopped->before->scatter)) break;
     stopped.reset();
     const Box& box = region.box;
@@ -620,7 +602,7 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
     }
   }
   if (stopped) region = *stopped;
-  if (!refine(2 * options.runs)) return none;
+  if (!refine(2 * options.runs)) return std::nullopt;
 
   DecayFit fit;
   for (std::size_t j = 0; j < count; ++j) {
@@ -646,8 +628,68 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
                                     3) -
                         (1 - ninth)) /
                        std::sqrt(ninth);
-  fit.runs = sampler.runs;
-  return {fit, {}};
+  return fit;
+}
+
+}  // namespace
+
+// --- The fit ----------------------------------------------------------------------------------------------
+
+std::vector<Problem> problems_of_fit(const SceneInUnits& scene, const FitOptions& options) {
+  std::vector<Problem> problems;
+  const auto& chosen = options.parameters;
+  for (auto each = chosen.begin(); each != chosen.end(); ++each)
+    if (std::find(chosen.begin(), each, *each) != each)
+      problems.push_back(
+          {"parameters", filled("must be different, got {} twice", in_quotes(name_of(*each)))});
+  if (options.runs < 1) problems.push_back({"runs", filled("must be >= 1, got {}", options.runs)});
+  if (!(options.level > 0))
+    problems.push_back({"level", filled("must be a number > 0, got {}", options.level)});
+  if (scene.dampers.size() != 1) problems.push_back({"dampers", "must be one damper, without a list"});
+  return problems;
+}
+
+FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduction& reduction,
+                    const std::vector<LossBin>& bins, const FitOptions& options,
+                    const std::function<void(const std::string&)>& tell) {
+  std::vector<Problem> problems = problems_of_fit(scene, options);
+  if (options.parameters.empty()) problems.push_back({"parameters", "at least one must be given"});
+  require_none(problems);
+  const std::size_t count = options.parameters.size();
+  if (bins.size() < count + 1)
+    return {std::nullopt, filled("a fit of {} numbers needs {} ranges of amplitude with a known loss factor, "
+                                 "the record has {}",
+                                 count, count + 1, bins.size())};
+  DecaySampler sampler{scene, engine, reduction, bins, options, tell};
+  for (const FitParameter each : options.parameters)
+    sampler.ranges.push_back(searched_range(each, scene, bins));
+  Box box{Vector(count, 0.0), Vector(count, 1.0)};
+  const Points points = sampler.points({box, {}, {}}, options.runs);
+  std::optional<DecayFit> best;
+  constexpr int coarse_stages = 2;
+  if (double(points.loss.size()) * kept >= double(4 * count))
+    best = fit_in(sampler, box_of_nearest(points, bins, box, kept), coarse_stages);
+  // The runs nearest to the record need not lie where it is: where decays are chaotic each is as likely to be
+  // far from it. If nothing there is like the record, the search begins anew about others.
+  constexpr int most_starts = 3;
+  constexpr double apart = 0.15;  // fraction of the searched range
+  std::vector<Vector> starts;
+  for (const std::size_t i : by_nearness(points, bins)) {
+    if ((best && best->normal_deviate <= most_normal_deviate) || int(starts.size()) == most_starts) break;
+    const Vector& place = points.place[i];
+    const auto is_near = [&](const Vector& other) {
+      return std::ranges::equal(place, other, [](double a, double b) { return std::abs(a - b) < apart; });
+    };
+    if (std::ranges::any_of(starts, is_near)) continue;
+    starts.push_back(place);
+    for (std::size_t j = 0; j < count; ++j)
+      box.low[j] = std::max(0.0, place[j] - apart), box.high[j] = std::min(1.0, place[j] + apart);
+    const std::optional<DecayFit> fit = fit_in(sampler, box, 0);
+    if (fit && (!best || fit->normal_deviate < best->normal_deviate)) best = fit;
+  }
+  if (!best) return {std::nullopt, "no decay in the searched range passes through the record's amplitudes"};
+  best->runs = sampler.runs;
+  return {best, {}};
 }
 
 }  // namespace impact_damper
