@@ -144,7 +144,7 @@ int compare(Arguments& arguments) {
   const auto figures = figures_folder(arguments);
   arguments.finish();
   const SceneFile file = read_scene_file(*scene_name);
-  require_one_ideal_damper(file.scene, *scene_name);
+  require_one_linear_damper(file.scene, *scene_name);
   if (!file.in_units)
     throw InputError(std::vector{
         *scene_name +
