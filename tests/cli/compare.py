@@ -4,6 +4,7 @@ Records are made by tests/measured/make_record.py, which shares no code with the
 is within an interval: ../measured/.
 """
 import json
+import math
 import re
 import signal
 import sys
@@ -76,6 +77,15 @@ text, of_acceleration = compare("acceleration.csv", "--fit", "none")
 demand("they may err by 4 %" in text, text)
 demand("fit" not in of_acceleration, "nothing was to be fitted")
 demand_valid("comparison", of_acceleration, "without a fit")
+
+# Friction, inclination and drag are taken from the scene, and said.
+write("slides.json", json.loads(scene.read_text(encoding="utf-8")) | {"friction_coefficient": 0.2, "inclination": 3, "drag": 0.5})
+text, slides = compare(example, "--engine", "restitution", "--fit", "none", scene="slides.json")
+held = 1.04 * (0.2 * math.cos(math.radians(3)) + math.sin(math.radians(3))) * 9806.65 / 400
+demand("a coefficient of friction of 0.2, an inclination of 3 degrees and a drag of 0.5 N s/m. If it is wrong" in text, text)
+demand(f"Up to {held:.3g} mm the secondary mass is held at rest" in text, text)
+demand(slides["bins"][-2]["simulated"] < 0.5 * found["bins"][-2]["simulated"], "friction does not hold the mass")
+demand("known from the scene" not in call("compare", "--measured", example, "--scene", scene, "--fit", "none"), "nothing is known of friction")
 
 # Interrupted, it leaves nothing behind.
 (folder / "out.json").unlink()
