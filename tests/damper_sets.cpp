@@ -10,6 +10,7 @@
 
 #include "application/sweeps/damper_set_design.hpp"
 #include "application/sweeps/sampling.hpp"
+#include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/simulate.hpp"
 
@@ -288,4 +289,89 @@ TEST_CASE("viscous damping adds to all, and the number of threads changes nothin
   asked.damping_ratio = 0.003;
   CHECK(least(answer(asked).expected) - least(free.expected) ==
         doctest::Approx(2 * 0.003 / 1.02).epsilon(1e-9));
+}
+
+// --- With friction, weight and drag -----------------------------------------------------------------------
+
+namespace {
+
+// The mast of README.md in mm: a coefficient of friction of 0.2, Omega_n = 20 1/s.
+constexpr double friction = 0.2 * 9806.65 / 400;
+DamperSetQuestion rough_question(std::int64_t count) {
+  return {.release = 60, .upper = 54, .to = 9, .mass_ratio = 0.04, .count = count, .friction = friction};
+}
+// The least loss factor of these dampers, with the friction of the question, by its own runs in mm.
+double least_loss(const DamperSetQuestion& asked, const std::vector<SceneDamper>& dampers,
+                  const std::vector<double>& edges) {
+  Scene scene{.x0 = asked.release, .until_time = 1e4, .until_amplitude = asked.to, .dampers = dampers};
+  scene.weight = asked.weight;
+  for (SceneDamper& each : scene.dampers)
+    each.friction = asked.friction, each.drag = asked.drag / each.mass_ratio;
+  return least(losses_between(simulate_ensemble(scene, Restitution{}, Record{}, {.members = 8}), edges).mean);
+}
+
+}  // namespace
+
+TEST_CASE("dampers that slide are designed for their friction, and better than without") {
+  const DamperSetQuestion asked = rough_question(3);
+  const DamperSet set = answer(asked);
+  const double found = least(set.run.mean);
+  CHECK(least_loss(asked, set.dampers, set.edges) == doctest::Approx(found).epsilon(0.05));
+  DamperSetQuestion smooth = asked;
+  smooth.friction = 0;
+  const DamperSet unaware = answer(smooth);
+  CHECK(found > 1.2 * least_loss(asked, unaware.dampers, set.edges));
+  CHECK(found > 1.2 * set.one.value().least);
+  // The runs confirm what is known of one damper in each bin, with its friction.
+  for (std::size_t i = 0; i < set.run.mean.size(); ++i)
+    CHECK(set.run.mean[i] == doctest::Approx(set.expected[i]).epsilon(0.2));
+}
+
+TEST_CASE("below the amplitude at which friction and weight hold all masses no dampers are designed") {
+  DamperSetQuestion asked = rough_question(2);
+  const double held = 1.04 * friction;
+  CHECK(locking_amplitude_of(asked) == doctest::Approx(held));
+  asked.to = held * (1 + 1e-9);
+  CHECK(problems_of(asked).empty());
+  asked.to = held * (1 - 1e-9);
+  REQUIRE(problems_of(asked).size() == 1);
+  CHECK(problems_of(asked)[0].field == "to");
+  // Held they are: the decay ends there.
+  Scene scene{.x0 = 60, .until_time = 4000};
+  scene.dampers = {{.mass_ratio = 0.03, .clearance = 20, .friction = friction},
+                   {.mass_ratio = 0.01, .clearance = 8, .friction = friction}};
+  const double end = simulate(scene, Restitution{}, Record{}).half_cycles->amplitude.back();
+  CHECK(end > 0.9 * held);
+  CHECK(end < 1.02 * held);
+  asked.static_friction = 2 * friction, asked.weight = 1;
+  CHECK(locking_amplitude_of(asked) == doctest::Approx(1.04 * (2 * friction + 1)));
+  asked.to = 20, asked.static_friction = friction / 2, asked.weight = -1, asked.drag = -1;
+  std::vector<std::string> fields;
+  for (const Problem& problem : problems_of(asked)) fields.push_back(problem.field);
+  CHECK(fields == std::vector<std::string>{"weight", "static_friction", "drag"});
+}
+
+TEST_CASE("lengths of friction and weight scale with the question") {
+  DamperSetQuestion asked = rough_question(2);
+  asked.friction = 0.5, asked.weight = 0.3, asked.drag = 0.002;
+  asked.static_friction = 0.75;
+  const Scene simulated = scene_of_set(asked, {{.mass_ratio = 0.01, .clearance = 30}, {.mass_ratio = 0.04}});
+  CHECK(simulated.weight * 60 == doctest::Approx(0.3));
+  for (const SceneDamper& each : simulated.dampers) {
+    CHECK(each.friction * 60 == doctest::Approx(0.5));
+    CHECK(each.static_friction * 60 == doctest::Approx(0.75));
+    CHECK(each.drag * each.mass_ratio == doctest::Approx(0.002));
+  }
+  asked.static_friction = 0;
+  const DamperSet set = answer(asked);
+  for (double* each : {&asked.release, &asked.upper, &asked.to, &asked.friction, &asked.weight}) *each *= 8;
+  const DamperSet eight = answer(asked);
+  REQUIRE(set.dampers.size() == eight.dampers.size());
+  for (std::size_t j = 0; j < set.dampers.size(); ++j) {
+    CHECK(eight.dampers[j].clearance == doctest::Approx(8 * set.dampers[j].clearance).epsilon(1e-2));
+    CHECK(eight.dampers[j].mass_ratio == doctest::Approx(set.dampers[j].mass_ratio).epsilon(0.1));
+  }
+  asked = rough_question(2);
+  asked.friction = 0.5, asked.weight = 0.3, asked.drag = 0.002;
+  CHECK(least_loss(asked, set.dampers, set.edges) == doctest::Approx(least(set.run.mean)).epsilon(0.05));
 }

@@ -4,6 +4,7 @@ Records are made by tests/measured/make_record.py, which shares no code with the
 is within an interval: ../measured/.
 """
 import json
+import math
 import re
 import signal
 import sys
@@ -86,6 +87,15 @@ demand_valid("comparison", of_velocity, "of a velocity")
 for quantity, other, power in (("acceleration", of_acceleration, 2), ("velocity", of_velocity, 1)):
     amplitudes = [each["half_cycles"]["amplitude"][0] for each in (found, other)]
     demand(abs(amplitudes[1] / amplitudes[0] - 1) < 0.01 * power, f"{quantity}: {amplitudes[1]} mm in place of {amplitudes[0]} mm")
+
+# Friction, inclination and drag are taken from the scene, and said.
+write("slides.json", json.loads(scene.read_text(encoding="utf-8")) | {"friction_coefficient": 0.2, "inclination": 3, "drag": 0.5})
+text, slides = compare(example, "--engine", "restitution", "--fit", "none", scene="slides.json")
+held = 1.04 * (0.2 * math.cos(math.radians(3)) + math.sin(math.radians(3))) * 9806.65 / 400
+demand("a coefficient of friction of 0.2, an inclination of 3 degrees and a drag of 0.5 N s/m. If it is wrong" in text, text)
+demand(f"Up to {held:.3g} mm the secondary mass is held at rest" in text, text)
+demand(slides["bins"][-2]["simulated"] < 0.5 * found["bins"][-2]["simulated"], "friction does not hold the mass")
+demand("known from the scene" not in call("compare", "--measured", example, "--scene", scene, "--fit", "none"), "nothing is known of friction")
 
 # Interrupted, it leaves nothing behind.
 (folder / "out.json").unlink()

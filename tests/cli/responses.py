@@ -123,6 +123,8 @@ branches = {
     "few": [*doubling, "--vary", "force_amplitude=0.05:0.12", "--max-branches", 1, "--largest-step", 0.01],
     "mast": ["--scene", source / "data/examples/mast_in_wind.json", "--vary", "exciting_frequency=3.09:3.0", "--start=0:0:5:0"],
     "chaotic": [*forced, "--force-frequency", 0.9, "--vary", "force_amplitude=0.05:0.06", "--max-periods", 20],
+    "slides": ["--engine", "restitution", "--mass-ratio", 0.1, "--damping-ratio", 0.05, "--friction", 0.15, "--force-amplitude", 0.25,
+               "--force-frequency", 0.8, "--x0", 1, "--y0", 0.3, "--vary", "force_frequency=0.8:0.81"],
 }
 found = {}
 for name, words in branches.items():
@@ -149,6 +151,8 @@ for name, words in branches.items():
                    f"{name}.csv: {row}")
             demand({key: float(row[key]) for key in "xvyw"} == event["state"], f"{name}.csv: {row}")
     demand(len(rows) == sum(len(each["values"]) + len(each["events"]) for each in document["branches"]), f"{name}.csv: rows")
+demand(all(("stop_margin" in branch) == (name == "slides") for name, each in found.items() for branch in each["branches"]), "stop_margin")
+demand(max(found["slides"]["branches"][0]["stop_margin"]) > 0.01, f"slides: {found['slides']['branches'][0]['stop_margin']}")
 demand([start["branch"] for start in found["chaotic"]["starts"]] == [None] and not found["chaotic"]["branches"], "chaotic: a branch")
 demand([start["end"] for start in found["mast"]["starts"]] == ["periodic"] * 2, "mast: a start")
 

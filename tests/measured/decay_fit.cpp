@@ -144,3 +144,44 @@ TEST_CASE("losses that no damper of the searched range has are told from those t
   }
   CHECK(fit_of(other).normal_deviate > most_normal_deviate);
 }
+
+TEST_CASE(
+    "a record with friction is fitted by the true numbers if the scene has it, and by none without it") {
+  // The mast's block slides with mu = 0.2: it is held up to 5.1 mm.
+  SceneInUnits truth = made::mast();
+  truth.damper().restitution = 0.5, truth.damper().secondary_mass = 1.8;
+  truth.damper().friction_coefficient = 0.2, truth.damper().contact_stiffness = 1.6e10;
+  truth.until_seconds = 16;
+  const Scene scene = dimensionless(truth);
+  const made::Instrument instrument{.noise = 0.05, .seed = 5};
+  const Record samples{.half_cycles = false,
+                       .history = {{0, *scene.until_time, made::samples_of(scene, instrument)}}};
+  const MeasuredRecord record = made::measured(truth, simulate(scene, Exact{}, samples), instrument);
+  const Reduction reduction = reduced("made", record);
+  const auto fitted = [&](double friction, double mass, FitParameter second) {
+    SceneInUnits given = made::mast();
+    given.damper().friction_coefficient = friction, given.damper().secondary_mass = mass;
+    FitOptions options;
+    options.runs = 200;
+    options.parameters = {FitParameter::restitution, second};
+    FitResult result =
+        fit_decay(given, Restitution{}, reduction, loss_bins(reduction), options, [](const std::string&) {});
+    REQUIRE(result.fit.has_value());
+    return *result.fit;
+  };
+  const DecayFit with = fitted(0.2, 1.6, FitParameter::secondary_mass),
+                 without = fitted(0, 1.6, FitParameter::secondary_mass),
+                 of_friction = fitted(0, 1.8, FitParameter::friction_coefficient);
+  for (const DecayFit* fit : {&with, &of_friction}) {
+    for (const FittedParameter& each : fit->parameters) {
+      const double expected = value_of(truth, each.parameter), spare = 0.3 * (each.high - each.low);
+      CAPTURE(name_of(each.parameter));
+      CHECK(expected > each.low - spare);
+      CHECK(expected < each.high + spare);
+      CHECK(each.high - each.low < 0.25 * expected);
+    }
+    CHECK(fit->normal_deviate < most_normal_deviate);
+  }
+  CHECK(without.normal_deviate > most_normal_deviate);
+  CHECK(without.parameters[1].low > 1.05 * *truth.damper().secondary_mass);
+}

@@ -35,11 +35,13 @@ struct Instrument {
   unsigned seed = 1;
 };
 
-inline MeasuredRecord measured(const SceneInUnits& in_units, const Instrument& instrument) {
+inline int samples_of(const Scene& scene, const Instrument& instrument) {
+  return int(*scene.until_time / (2 * std::numbers::pi) * instrument.samples_per_cycle) + 1;
+}
+// The record of a run of this scene that has a history of so many samples.
+inline MeasuredRecord measured(const SceneInUnits& in_units, const Run& run, const Instrument& instrument) {
   const Scales scales = scales_of(in_units);
   const Scene scene = dimensionless(in_units);
-  const int samples = int(*scene.until_time / (2 * std::numbers::pi) * instrument.samples_per_cycle) + 1;
-  const Run run = reference::PlainIntegration(scene, true, samples).run();
   std::mt19937 random(instrument.seed);
   std::normal_distribution<double> normal;
   MeasuredRecord record;
@@ -58,6 +60,11 @@ inline MeasuredRecord measured(const SceneInUnits& in_units, const Instrument& i
     record.value.push_back(value);
   }
   return record;
+}
+inline MeasuredRecord measured(const SceneInUnits& in_units, const Instrument& instrument) {
+  const Scene scene = dimensionless(in_units);
+  return measured(in_units, reference::PlainIntegration(scene, true, samples_of(scene, instrument)).run(),
+                  instrument);
 }
 
 }  // namespace made

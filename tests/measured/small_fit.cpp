@@ -164,6 +164,16 @@ TEST_CASE("a fit for which an option is out of range, or of a list of dampers, i
   SceneInUnits list = heavy();
   list.dampers.push_back({.secondary_mass = 4, .clearance = 8});
   CHECK(fields(list, {}) == Names{"dampers"});
+  options.parameters = {FitParameter::restitution, FitParameter::damping_ratio, FitParameter::clearance,
+                        FitParameter::secondary_mass};
+  CHECK(fields(heavy(), options).empty());
+  options.parameters.push_back(FitParameter::friction_coefficient);
+  CHECK(fields(heavy(), options) == Names{"parameters"});
+  options.parameters = {FitParameter::friction_coefficient};
+  SceneInUnits held = heavy();
+  held.damper().static_friction_coefficient = 0.3, held.gravity = 0;
+  CHECK(fields(held, options) == Names{"static_friction_coefficient", "gravity"});
+  CHECK(fields(held, {}).empty());
 
   // The same before a comparison begins.
   const auto compare = [&](const SceneInUnits& scene, const ComparisonOptions& with) {

@@ -585,7 +585,7 @@ write("forced.json", forced)
 for wind, newtons in {"wind": 2, "gale": 2.4}.items():
     write(f"{wind}.json", {**forced, "exciting_force": newtons, "exciting_frequency": 3.15, "initial_displacement": 0})
 write("boxes.json", {
-    "mass": 40, "stiffness": 16000, "initial_displacement": 60, "until_millimetres": 0.3, "until_seconds": 300,
+    "mass": 40, "stiffness": 16000, "gravity": 3.7, "initial_displacement": 60, "until_millimetres": 0.3, "until_seconds": 300,
     "dampers": [{"secondary_mass": 0.5, "clearance": 8}, {"secondary_mass": 0.4, "clearance": 20, "contact_stiffness": 1e7},
                 {"secondary_mass": 0.3, "clearance": 50, "restitution": 0.5}]})
 write("pushed.json", {

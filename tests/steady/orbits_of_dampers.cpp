@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "impact_damper/orbits/branches.hpp"
+#include "impact_damper/orbits/corrector.hpp"
 #include "impact_damper/simulate.hpp"
 #include "reference.hpp"
 #include "same_run.hpp"
@@ -319,6 +320,65 @@ TEST_CASE("a branch goes on where impacts of both dampers pass phase 0") {
     CHECK(before.impacts.size() == after.impacts.size());
   }
   CHECK(passed == std::array<int, 2>{1, 1});
+}
+
+TEST_CASE("an impact that passes phase 0 is carried across it with friction and weight") {
+  Scene scene{.damping_ratio = 0.3, .x0 = 0, .force_amplitude = 0.7, .force_frequency = 0.9, .weight = 0.4};
+  scene.dampers = {{.mass_ratio = 0.2, .restitution = 0.5, .friction = 0.9},
+                   {.mass_ratio = 0.3, .clearance = 2, .friction = 0.6}};
+  const SceneDamper &first = scene.dampers[0], &second = scene.dampers[1];
+  // By parabolas with the forces at phase 0: back to the wall, or on to it where the mass leaves it, through
+  // the impact, and the same time the other way. w_of: of the first mass after the impact, by that before.
+  const auto carried = [&](StateVector s, double wall, double factor) {
+    const auto rates = [&](double sign) {
+      const double on_first = first.friction * sign, on_second = second.friction * (s[5] > 0 ? 1 : -1);
+      const double a = -2 * scene.damping_ratio * s[1] - s[0] + first.mass_ratio * on_first +
+                       second.mass_ratio * on_second;
+      return std::array{a, -a - on_first - scene.weight, -a - on_second - scene.weight};
+    };
+    const auto pass = [&](double time, double sign) {
+      const auto by = rates(sign);
+      for (std::size_t i = 0; i < 3; ++i) {
+        s[2 * i] += s[2 * i + 1] * time + by[i] * time * time / 2;
+        s[2 * i + 1] += by[i] * time;
+      }
+    };
+    const double before = s[3] > 0 ? 1 : -1, pull = rates(before)[1], way = s[2] - wall;
+    // The root of way + w t + pull t^2/2 next to 0.
+    const double time = -2 * way / (s[3] + before * std::sqrt(s[3] * s[3] - 2 * pull * way));
+    pass(time, before);
+    const double gained = first.mass_ratio * (s[3] - factor * s[3]) / (1 + first.mass_ratio);
+    s[1] += gained, s[5] -= gained, s[3] *= factor;
+    pass(-time, -before);
+    return s;
+  };
+  constexpr double beyond = 1e-7;
+  for (const double wall : {0.0, 1.0}) {
+    for (const bool approaches : {true, false}) {
+      for (const double other : {0.3, -0.8}) {
+        CAPTURE(wall);
+        CAPTURE(approaches);
+        CAPTURE(other);
+        const double out = wall > 0 ? 1 : -1, factor = approaches ? -0.5 : -2;
+        const StateVector s{0.4, -0.7, wall + out * beyond, (approaches ? 1.1 : -1.1) * out, 1.2, other};
+        const auto found = corrector::across_phase_0(scene, Restitution{}, s, s);
+        REQUIRE(found);
+        REQUIRE(found->by_state.size() == 1);
+        const StateVector expected = carried(s, wall, factor);
+        for (std::size_t i = 0; i < s.size(); ++i)
+          CHECK(found->state[i] == doctest::Approx(expected[i]).epsilon(1e-12));
+        for (std::size_t j = 0; j < s.size(); ++j) {
+          constexpr double h = 1e-4;
+          StateVector up = s, down = s;
+          up[j] += h, down[j] -= h;
+          const StateVector a = carried(up, wall, factor), b = carried(down, wall, factor);
+          for (std::size_t i = 0; i < s.size(); ++i)
+            CHECK(found->by_state[0][i][j] ==
+                  doctest::Approx((a[i] - b[i]) / (2 * h)).epsilon(1e-5).scale(1));
+        }
+      }
+    }
+  }
 }
 
 TEST_CASE(

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <vector>
 
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/io/run_file.hpp"
@@ -157,6 +159,43 @@ TEST_CASE("branches of several dampers tell state and impacts of each, whose sum
   says(changed(text, "impacts_left", one_more),
        "/branches/0/impacts_left/0 must be 2, the sum over the dampers, got 3");
   says(altered(text, R"({"y": 0.4, "w": 0.2}, )", ""), "as many as in the scene, 2, got 1");
+}
+
+TEST_CASE("orbits with friction have the margin of their stops, which is that of a run from their state") {
+  OrbitsResponse asked = asked_orbits();
+  CHECK(response_text(found_for(asked, 1)).find("stop_margin") == std::string::npos);
+  asked.scene = {.damping_ratio = 0.05,
+                 .x0 = 1,
+                 .force_amplitude = 0.25,
+                 .force_frequency = 0.95,
+                 .weight = 0.06,
+                 .dampers = {{.mass_ratio = 0.1, .restitution = 0.5, .y0 = 0.3, .friction = 0.15}}};
+  asked.range = {Parameter::force_frequency, 0.95, 0.96};
+  asked.starts = {{{}, 0, {}, release_of(asked.scene)}};
+  const WrittenAndRead orbits(asked);
+  CHECK(response_text(orbits.read) == orbits.text);
+  CHECK(complaint(orbits.text).empty());
+  REQUIRE_FALSE(orbits.read.branches.empty());
+  int stopped = 0;
+  const std::vector<OrbitPoint>& points = orbits.read.branches[0].points;
+  for (std::size_t p = 0; p < points.size(); p += 7) {
+    const OrbitPoint& point = points[p];
+    Scene scene = released_from(asked.scene, point.state);
+    scene.force_frequency = point.value;
+    scene.until_time = double(point.period) * 2 * std::numbers::pi / point.value;
+    const Run run =
+        simulate(scene, Restitution{}, {.half_cycles = false, .history = {{0, *scene.until_time, 200'001}}});
+    const std::vector<double>&w = run.history->dampers[0].w, &time = run.history->time;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t n = 2; n < w.size(); ++n)
+      if (w[n - 1] != 0 && w[n] * w[n - 1] <= 0 && std::fabs(w[n - 1]) < 1e-3)
+        least = std::min(least, std::fabs(w[n - 1] - w[n - 2]) / (time[n - 1] - time[n - 2]));
+    REQUIRE(point.stop_margin.has_value() == std::isfinite(least));
+    if (!point.stop_margin) continue;
+    CHECK(*point.stop_margin == doctest::Approx(least).epsilon(1e-3));
+    ++stopped;
+  }
+  CHECK(stopped > 3);
 }
 
 TEST_CASE("the impacts of an orbit are those of a run from its state") {

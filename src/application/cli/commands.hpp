@@ -99,10 +99,10 @@ enum class Stops { needed, ignored };
 SceneFile scene_of(Arguments& arguments, Stops stops = Stops::needed);
 // Returns the text of --scene, "" without one.
 std::string scene_name_of(const Arguments& arguments);
-// Throw InputError about its file where a command that is for one damper, or for one without friction, weight
-// and drag, is given another scene.
+// Throw InputError about its file where a command that is for one damper, or for one without laws of its own,
+// is given another scene.
 void require_one_damper(const Scene& scene, const std::string& scene_file);
-void require_one_ideal_damper(const Scene& scene, const std::string& scene_file);
+void require_one_linear_damper(const Scene& scene, const std::string& scene_file);
 // Rejects the options beside --scene, in commands that change a scene in units by its own numbers.
 void reject_options_beside_units(Arguments& arguments, const SceneFile& scene, const std::string& instead);
 Engine engine_of(Arguments& arguments, const std::vector<Engine>& engines = default_engines());

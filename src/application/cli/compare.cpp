@@ -153,7 +153,7 @@ int compare(Arguments& arguments) {
   const auto figures = figures_folder(arguments);
   arguments.finish();
   const SceneFile file = read_scene_file(*scene_name);
-  require_one_ideal_damper(file.scene, *scene_name);
+  require_one_linear_damper(file.scene, *scene_name);
   if (!file.in_units)
     throw InputError(std::vector{
         *scene_name +
@@ -201,7 +201,8 @@ Command compare_command() {
                      input_option("--scene", "FILE", "the scene, in units and without a force"),
                      {"--fit", "LIST",
                       "what is fitted, with commas between: restitution, damping_ratio, "
-                      "clearance\n(these are the default), secondary_mass; or none"},
+                      "clearance\n(these are the default), secondary_mass, friction_coefficient, up "
+                      "to\nfour; or none"},
                      {"--figures", "FOLDER",
                       "draw amplitude over time and loss factor over amplitude there, "
                       "as\nmeasured_decay.svg and measured_loss.svg"},
@@ -210,7 +211,8 @@ Command compare_command() {
                     engine_options()}),
       .footer =
           R"(A decay is chaotic: runs that hardly differ scatter. The fit simulates some 10 000 decays with other numbers, and its
-intervals allow for the scatter as well as for the record's noise (docs/compare.md).
+intervals allow for the scatter as well as for the record's noise (docs/compare.md). Friction, inclination and drag of the
+scene count as known.
 
 Example:
   impact-damper compare --measured decay.csv --scene data/examples/mast.json --figures . -o comparison.json)",

@@ -259,7 +259,7 @@ void read_tolerances(Arguments& arguments, DamperSetQuestion& question) {
 Asked asked_of(Arguments& arguments) {
   Asked asked;
   asked.file = scene_with_one_damper(arguments);
-  require_one_ideal_damper(asked.file.scene, scene_name_of(arguments));
+  require_one_linear_damper(asked.file.scene, scene_name_of(arguments));
   for (const char* option : {"--within", "--share", "--clearance", "--neighbours", "--seed", "--write-plan"})
     if (arguments.given(option)) arguments.reject(option, "is not for several dampers, --dampers");
   for (const Option& option : engine_options())
@@ -282,6 +282,10 @@ Asked asked_of(Arguments& arguments) {
       asked.mass;
   question.restitution = scene.damper().restitution;
   question.damping_ratio = scene.damping_ratio;
+  question.friction = scene.damper().friction * length;
+  question.static_friction = scene.damper().static_friction * length;
+  question.weight = scene.weight * length;
+  question.drag = scene.damper().drag * scene.damper().mass_ratio;
   read_tolerances(arguments, question);
   return asked;
 }
@@ -295,6 +299,7 @@ std::string scene_file_text(const Asked& asked, const DamperSet& set) {
                                   readable(question.release), readable(question.to)));
   if (asked.file.in_units) {
     SceneInUnits scene = *asked.file.in_units;
+    const DamperInUnits given = scene.damper();
     scene.dampers.clear();
     scene.initial_displacement = question.release;
     scene.initial_velocity.reset();
@@ -305,6 +310,9 @@ std::string scene_file_text(const Asked& asked, const DamperSet& set) {
       each.secondary_mass = in_three_digits(damper.mass_ratio * asked.mass);
       each.clearance = damper.clearance;
       each.restitution = damper.restitution;
+      each.friction_coefficient = given.friction_coefficient;
+      each.static_friction_coefficient = given.static_friction_coefficient;
+      each.drag = given.drag;
     }
     write_unit_fields(out, scene);
   } else {
@@ -314,6 +322,7 @@ std::string scene_file_text(const Asked& asked, const DamperSet& set) {
     scene.until_amplitude = question.to;
     scene.dampers = set.dampers;
     for (SceneDamper& damper : scene.dampers) damper.mass_ratio = in_three_digits(damper.mass_ratio);
+    set_components(scene, question, 1);
     write_scene_fields(out, scene);
   }
   out.close();
@@ -352,6 +361,9 @@ std::string text_of(const Asked& asked, const DamperSet& set) {
         "One damper of that mass, designed in the same way, has a clearance of {}{} and a loss "
         "factor of {} or more.\n",
         readable(set.one->clearance), length, readable(set.one->least));
+  if (const double held = locking_amplitude_of(question); held > 0)
+    text += filled("Up to {}{} these masses are held at rest in cavities of any clearance.\n", readable(held),
+                   length);
   const auto without_mass = question.count - std::int64_t(set.dampers.size());
   if (without_mass > 0) text += filled("Of {} clearances {} got no mass.\n", question.count, without_mass);
   return text;
@@ -466,7 +478,8 @@ Command design_command() {
       .footer =
           R"(The scene is that of impact-damper run, a free decay; its secondary mass and clearance are not looked at. Beside a
 dimensionless scene lengths are in units of its clearance, masses of the primary mass, times of sqrt(M/K).
-Its friction and weight hold a secondary mass at small amplitudes, with any clearance: --to must lie above them.
+Its friction and weight hold secondary masses at small amplitudes, with any clearance: --to must lie above them.
+With --dampers each cavity has the friction, the inclination and the drag of the scene's.
 Time is counted to the peak of the first half cycle below the amplitude.
 
 Each line is the lightest design for a time, the first for the time asked: "nominal" is its own time, the next

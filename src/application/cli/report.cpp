@@ -25,7 +25,11 @@ int report(Arguments& arguments) {
   warn_of_cautions("impact-damper report", file.scene, file.scales);
 
   const Subject subject{scene_name.empty() ? "a scene" : std::filesystem::path(scene_name).stem().string(),
-                        file.description, file.scene, file.scales, engine};
+                        file.description,
+                        file.scene,
+                        file.scales,
+                        engine,
+                        file.in_units ? file.in_units->gravity.value_or(standard_gravity) : standard_gravity};
   ProgressOnStderr progress("report");
   const Findings findings =
       saying_options([&] { return examine(subject, ensemble, std::ref(progress)); }, scene_name, file.scales);

@@ -343,7 +343,7 @@ void warn_of(const Basin& basin, const SteadyRule& rule) {
                filled("points are undecided because a budget of the engine ended them; {}", which_budget));
 }
 
-void warn_of(const Branches& found, const BranchRule& rule) {
+void warn_of(const Branches& found, const BranchRule& rule, const Scene& scene) {
   std::int64_t open = 0, ended = 0;
   for (const BranchStart& start : found.starts) {
     const bool is_ended = start.steady.stop_reason != StopReason::time;
@@ -351,8 +351,13 @@ void warn_of(const Branches& found, const BranchRule& rule) {
     open += !is_ended && !start.orbit;
     if (start.orbit == OrbitEnd::no_derivative)
       warn(this_command,
-           "several masses meet walls at one instant, so their motion has no multipliers: give those that "
-           "move alike as one with the sum of their masses, or release them apart");
+           has_components(scene)
+               ? "two events happen at one instant, or a mass stops where friction just holds it, so the "
+                 "motion "
+                 "has no multipliers: release the masses apart, or change friction or weight a little"
+               : "several masses meet walls at one instant, so their motion has no multipliers: give those "
+                 "that "
+                 "move alike as one with the sum of their masses, or release them apart");
     else if (start.orbit && *start.orbit != OrbitEnd::converged)
       warn(this_command, filled("no periodic orbit is found near a motion that repeats: {}", end_of(start)));
   }
@@ -420,7 +425,7 @@ Response followed(const Request& asked) {
   Progress progress("branches are followed", std::nullopt);
   const Branches found =
       find_branches(scene, asked.engine, *asked.range, rule, asked.starts, asked.threads, std::ref(progress));
-  if (!asked.quiet) warn_of(found, rule);
+  if (!asked.quiet) warn_of(found, rule, scene);
   return orbits_response(scene, asked.engine, rule, *asked.range, found);
 }
 

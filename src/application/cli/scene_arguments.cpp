@@ -182,13 +182,8 @@ void require_one_damper(const Scene& scene, const std::string& scene_file) {
   if (!has_one_damper(scene)) throw InputError(scene_file, {{"/dampers", problem_of_several().message}});
 }
 
-void require_one_ideal_damper(const Scene& scene, const std::string& scene_file) {
+void require_one_linear_damper(const Scene& scene, const std::string& scene_file) {
   require_one_damper(scene, scene_file);
-  if (has_components(scene))
-    throw InputError(scene_file.empty() ? "the scene" : scene_file,
-                     {{"",
-                       "friction, weight and drag are not for this command, which does not take "
-                       "them into account: leave them out"}});
   if (has_laws(scene))
     throw InputError(
         scene_file,

@@ -107,7 +107,6 @@ void remark_on_fit(Comparison& c) {
                text_of(fit.chi_square), fit.degrees));
   for (const FittedParameter& each : fit.parameters) {
     const std::string_view name = name_of(each.parameter);
-    const bool is_bounded_by_0 = each.parameter == FitParameter::damping_ratio;
     const auto [least, most] = std::minmax(each.searched_from, each.searched_to);
     if (each.open_below && each.open_above && each.low <= least && each.high >= most) {
       c.remarks.push_back(
@@ -118,7 +117,7 @@ void remark_on_fit(Comparison& c) {
       c.remarks.push_back(filled("The interval of {} ends where the search did, at {}: it may be longer {}.",
                                  name, with_unit(text_of(end), unit_of(each.parameter)), side));
     };
-    if (each.open_below && !(is_bounded_by_0 && each.low <= least)) remark(each.low, "below");
+    if (each.open_below && !(is_bounded_by_0(each.parameter) && each.low <= least)) remark(each.low, "below");
     if (each.open_above) remark(each.high, "above");
   }
   constexpr double strong = 0.9;
@@ -133,14 +132,48 @@ void remark_on_fit(Comparison& c) {
   }
 }
 
+// Returns the amplitude, mm, up to which friction and weight hold the secondary mass (M15.14); 0 without
+// them.
+double locking_amplitude_of(const SceneInUnits& scene) {
+  const Scene made = dimensionless(scene);
+  return locking_amplitude(1 / std::sqrt(1 + made.damper().mass_ratio),
+                           made.damper().holding() + made.weight) *
+         *scene.damper().clearance;
+}
+
 void remark_on_range(Comparison& c) {
   const SceneInUnits& scene = c.fitted ? c.fitted->scene : c.given.scene;
   const double fold = fold_amplitude(value_of(scene, FitParameter::restitution)) * *scene.damper().clearance;
-  if (c.reduction.amplitude.back() > fold)
+  const double cease = std::max(fold, locking_amplitude_of(scene));
+  if (c.reduction.amplitude.back() > cease)
     c.remarks.push_back(
         filled("The record ends at {} mm, above the {} mm where impacts cease: from there "
                "restitution and clearance could be distinguished.",
-               text_of(c.reduction.amplitude.back()), text_of(fold)));
+               text_of(c.reduction.amplitude.back()), text_of(cease)));
+}
+
+// Says what friction, inclination and drag count as known, and up to which amplitude they hold the mass.
+void remark_on_components(Comparison& c, const FitOptions& options) {
+  const SceneInUnits& scene = c.fitted ? c.fitted->scene : c.given.scene;
+  const DamperInUnits& damper = scene.damper();
+  const auto is_given = [](const std::optional<double>& number) { return number.value_or(0) > 0; };
+  std::vector<std::string> known;
+  const auto note = [&](std::string_view what, const std::optional<double>& number, std::string_view unit) {
+    if (is_given(number)) known.push_back(filled("{} of {}", what, with_unit(text_of(*number), unit)));
+  };
+  if (std::ranges::find(options.parameters, FitParameter::friction_coefficient) == options.parameters.end())
+    note("a coefficient of friction", damper.friction_coefficient, "");
+  note("one of static friction", damper.static_friction_coefficient, "");
+  note("an inclination", scene.inclination, "degrees");
+  note("a drag", damper.drag, unit_of(Dimension::damping, true));
+  std::string remark;
+  if (!known.empty())
+    remark = filled("Taken as known from the scene: {}. If it is wrong, so are the simulations.",
+                    listed(std::vector<std::string_view>(known.begin(), known.end()), "and"));
+  if (const double held = locking_amplitude_of(scene); held > 0)
+    remark += filled("{}Up to {} mm the secondary mass is held at rest in its cavity.",
+                     remark.empty() ? "" : " ", text_of(held));
+  if (!remark.empty()) c.remarks.push_back(remark);
 }
 
 void write_decays(JsonWriter& out, std::string_view name, const SimulatedDecays& decays) {
@@ -189,6 +222,7 @@ Comparison compared(const std::string& record_name, const MeasuredRecord& record
   }
   remark_on_what_is_left_out(c);
   remark_on_range(c);
+  remark_on_components(c, options.fit);
   if (record.quantity == MeasuredQuantity::acceleration)
     c.remarks.push_back(
         filled("Displacements are accelerations divided by the square of the local angular frequency; they "

@@ -74,6 +74,15 @@ double log_loss_error(const Reduction& reduction, const Line& line, const IndexR
   return std::sqrt(variance) / std::abs(line.slope);
 }
 
+// Returns the largest coefficient of friction with which the secondary mass is not held at this amplitude, mm
+// (M15.14); 0 if there is none.
+double most_friction(SceneInUnits scene, double amplitude) {
+  scene.damper().friction_coefficient = 1;
+  const Scene made = dimensionless(scene);
+  const double most = amplitude / *scene.damper().clearance / (1 + made.damper().mass_ratio);
+  return std::max(0.0, (most - made.weight) / made.damper().friction);
+}
+
 // A parameter has the name of its field.
 const UnitField& field_of(FitParameter parameter) {
   return *std::ranges::find(unit_fields, name_of(parameter), &UnitField::name);
@@ -183,6 +192,7 @@ std::vector<double> log_losses(const HalfCycles& rows, double length, const std:
 std::string_view unit_of(FitParameter parameter) { return unit_of(field_of(parameter).dimension, true); }
 double value_of(const SceneInUnits& scene, FitParameter parameter) {
   if (const auto& given = field_of(parameter).number.in(scene)) return *given;
+  if (parameter == FitParameter::friction_coefficient) return 0;
   const Scene made = dimensionless(scene);
   return parameter == FitParameter::restitution ? made.damper().restitution : made.damping_ratio;
 }
@@ -212,13 +222,13 @@ namespace {
 // --- The searched range -----------------------------------------------------------------------------------
 
 // Searched range of a parameter in a coordinate of which the loss factor is nearly a polynomial: ln(1 - e),
-// zeta, ln epsilon or ln m. value() returns the parameter at a fraction of the range, from 0 to 1.
+// zeta, ln epsilon, ln m or mu. value() returns the parameter at a fraction of the range, from 0 to 1.
 struct SearchedRange {
   FitParameter parameter = FitParameter::restitution;
   double from = 0, to = 1;  // coordinates of the ends
   double value(double part) const {
     const double coordinate = from + (to - from) * part;
-    if (parameter == FitParameter::damping_ratio) return coordinate;
+    if (is_bounded_by_0(parameter)) return coordinate;
     const double number = exponential(coordinate);
     return parameter == FitParameter::restitution ? 1 - number : number;
   }
@@ -239,6 +249,8 @@ SearchedRange searched_range(FitParameter parameter, const SceneInUnits& scene,
       return {parameter, 0, beyond * std::ranges::min_element(bins, {}, &LossBin::loss)->loss / 2};
     case FitParameter::clearance:
       return about(clearance_factor);
+    case FitParameter::friction_coefficient:
+      return {parameter, 0, most_friction(scene, bins.back().lower)};
     case FitParameter::secondary_mass:
       break;
   }
@@ -645,7 +657,13 @@ std::vector<Problem> problems_of_fit(const SceneInUnits& scene, const FitOptions
   if (options.runs < 1) problems.push_back({"runs", filled("must be >= 1, got {}", options.runs)});
   if (!(options.level > 0))
     problems.push_back({"level", filled("must be a number > 0, got {}", options.level)});
+  if (chosen.size() > 4)
+    problems.push_back({"parameters", filled("must be at most 4, got {}", chosen.size())});
   if (scene.dampers.size() != 1) problems.push_back({"dampers", "must be one damper, without a list"});
+  if (std::ranges::find(chosen, FitParameter::friction_coefficient) == chosen.end()) return problems;
+  if (scene.damper().static_friction_coefficient.value_or(0) > 0)
+    problems.push_back({"static_friction_coefficient", "must be 0 or left out where the other is fitted"});
+  if (scene.gravity == 0.0) problems.push_back({"gravity", "must be > 0 where friction is fitted"});
   return problems;
 }
 

@@ -1,4 +1,4 @@
-// Restitution, viscous damping, clearance and secondary mass from a measured decay, with intervals
+// Restitution, viscous damping, clearance, secondary mass and friction from a measured decay, with intervals
 // (docs/mathematics.md, 16.2 and 16.3).
 #pragma once
 
@@ -34,7 +34,11 @@ std::vector<LossBin> loss_bins(const Reduction& reduction);
 // mm.
 std::vector<double> log_losses(const HalfCycles& rows, double length, const std::vector<LossBin>& bins);
 
-enum class FitParameter { restitution, damping_ratio, clearance, secondary_mass };
+enum class FitParameter { restitution, damping_ratio, clearance, secondary_mass, friction_coefficient };
+// Whether it is 0 or more; else it is more than 0 and, where it is the restitution, less than 1.
+constexpr bool is_bounded_by_0(FitParameter parameter) {
+  return parameter == FitParameter::damping_ratio || parameter == FitParameter::friction_coefficient;
+}
 std::string_view unit_of(FitParameter parameter);
 double value_of(const SceneInUnits& scene, FitParameter parameter);
 void set_value(SceneInUnits& scene, FitParameter parameter, double value);
@@ -83,8 +87,8 @@ struct FitResult {
   std::optional<DecayFit> fit;
   std::string problem;
 };
-// Returns the problems of the options, and one for a scene with a list of dampers. An empty list of
-// parameters is not a problem here.
+// Returns the problems of the options, and of a scene with a list of dampers or, if friction is fitted, with
+// a static friction of its own or without gravity. An empty list of parameters is not a problem here.
 std::vector<Problem> problems_of_fit(const SceneInUnits& scene, const FitOptions& options);
 // Fits the parameters to the record's loss factors (M16.7). The scene must be valid, without a force and with
 // one damper, not a list; `bins` are those of loss_bins(). `tell`, which must not be empty, receives messages

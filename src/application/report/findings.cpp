@@ -184,7 +184,8 @@ void find_frictions(Findings& findings, const Threads& threads) {
   const Scene& scene = findings.subject.scene;
   const std::optional<Scales>& scales = findings.subject.scales;
   if (!scales || has_components(scene) || !findings.first_amplitude) return;
-  const double gravity = standard_gravity / scales->of(Dimension::acceleration);
+  const double gravity = findings.subject.gravity / scales->of(Dimension::acceleration);
+  if (gravity == 0) return;
   std::vector<Scene> scenes(friction_coefficients.size(), scene);
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     scenes[i].until_amplitude.reset();

@@ -25,6 +25,7 @@ struct Subject {
   Scene scene;
   std::optional<Scales> scales;  // if it was given in units
   Engine engine;
+  double gravity = standard_gravity;  // m/s^2, of a scene in units
 };
 
 // The time at which the amplitude first was below a fraction of the first one (time_below() in regimes.hpp).

@@ -273,8 +273,11 @@ std::string cavity_sentences(const Findings& findings) {
   std::string text = findings.several() ? "It is assumed that the secondary masses move in level cavities"
                                         : "It is assumed that the secondary mass moves in a level cavity";
   text += " without friction, as on rollers or on a thread. ";
-  if (subject.scales) {
-    const double g = standard_gravity / subject.scales->of(Dimension::acceleration);
+  if (subject.scales && subject.gravity == 0) {
+    text += "Without gravity nothing presses " + std::string(findings.several() ? "them" : "it") +
+            " on a floor that could rub.";
+  } else if (subject.scales) {
+    const double g = subject.gravity / subject.scales->of(Dimension::acceleration);
     text +=
         "If " + they + " slid with a coefficient of friction of 0.1, 0.2 or 0.3, " + they +
         " would be held there below an amplitude of " + locking(0.1 * g) + ", " + locking(0.2 * g) + " or " +

@@ -22,9 +22,25 @@ constexpr double widest = 1.8;
 // base^exponent, base > 0, with bits that depend on no C library.
 double power_of(double base, double exponent) { return exponential(exponent * logarithm(base)); }
 
-// Loss of one damper with three restitutions: as designed, and at both ends of the tolerance.
+// Loss of one damper. Without friction, weight and drag it depends on the amplitude divided by the clearance
+// alone; with them, on the clearance, too: then there is one for each of `clearances`, which ascend, and the
+// nearest is taken.
+struct LossOfOne {
+  std::vector<double> clearances;
+  std::vector<LossAlone> losses;
+
+  double at(double amplitude, double clearance) const {
+    if (clearances.empty()) return losses.front().at(amplitude / clearance);
+    auto nearest = std::ranges::lower_bound(clearances, clearance);
+    if (nearest == clearances.end() ||
+        (nearest != clearances.begin() && clearance * clearance < *nearest * *(nearest - 1)))
+      --nearest;
+    return losses[std::size_t(nearest - clearances.begin())].at(amplitude / *nearest);
+  }
+};
+// With three restitutions: as designed, and at both ends of the tolerance.
 struct Known {
-  LossAlone nominal, lower, higher;
+  LossOfOne nominal, lower, higher;
 };
 
 Engine engine_of_sets() {
@@ -33,21 +49,25 @@ Engine engine_of_sets() {
   return engine;
 }
 
-LossAlone measured_alone(double mass_ratio, double restitution, double from, const Threads& threads) {
+// A free decay of one damper; lengths are in units of its clearance.
+Scene scene_alone(double mass_ratio, double restitution, double from, double until) {
   Scene scene;
   scene.damper().mass_ratio = mass_ratio;
   scene.damper().restitution = restitution;
   scene.x0 = from;
-  scene.until_amplitude = fold_amplitude(restitution) / 30;  // below its fold a mass still rattles
+  scene.until_amplitude = until;
   scene.until_time = 4e5;
+  return scene;
+}
+LossAlone measured_alone(const Scene& scene, const Threads& threads) {
   return loss_alone(simulate_ensemble(scene, engine_of_sets(), Record{}, {.members = 4, .threads = threads}));
 }
 
 double least_within(const Known& known, double amplitude, double clearance, double off) {
   double least = std::numeric_limits<double>::infinity();
-  for (const LossAlone* alone : {&known.nominal, &known.lower, &known.higher})
+  for (const LossOfOne* alone : {&known.nominal, &known.lower, &known.higher})
     for (int i = -4; i <= 4; ++i)
-      least = std::min(least, alone->at(amplitude / (clearance * (1 + off * i / 4))));
+      least = std::min(least, alone->at(amplitude, clearance * (1 + off * i / 4)));
   return least;
 }
 
@@ -67,15 +87,45 @@ std::vector<double> column_of(const Known& known, double clearance, const std::v
   return column;
 }
 
+bool has_components(const DamperSetQuestion& question) {
+  return question.friction > 0 || question.static_friction > 0 || question.weight > 0 || question.drag > 0;
+}
+
 // Bounds of the clearances: none is wider than `most`. The narrowest is below the one whose fold lies at the
-// amplitude `lowest`: the lower end of the range or, if smaller, the fold of the widest clearance.
+// amplitude `lowest`: the lower end of the range or, if smaller, the fold of the widest clearance. narrowest:
+// in units of that one's. With friction or weight impacts fail sooner, in a narrow cavity last.
 struct Bounds {
-  double fold, most, lowest;
+  double fold, most, lowest, narrowest;
 };
 Bounds bounds_of(const DamperSetQuestion& question) {
   const double fold = fold_amplitude(question.restitution),
                most = std::min(widest * question.release, question.upper / fold);
-  return {fold, most, std::min(question.to, most * fold)};
+  return {fold, most, std::min(question.to, most * fold), has_components(question) ? 0.1 : 0.4};
+}
+
+// Measures what one damper of this mass and restitution loses, with every clearance that may be tried.
+LossOfOne measured_alone(const DamperSetQuestion& question, double mass_ratio, double restitution,
+                         const Threads& threads) {
+  const Bounds bounds = bounds_of(question);
+  const double off = question.clearance_off,
+               least = bounds.narrowest * bounds.lowest / bounds.fold * (1 - off);
+  if (!has_components(question)) {
+    // The upper amplitude in units of the narrowest clearance tried, with its tolerance; 10 % more.
+    const double from = 1.1 * question.upper * bounds.fold / (bounds.narrowest * bounds.lowest) / (1 - off);
+    constexpr double deep = 30;  // below its fold a mass still rattles
+    return {{},
+            {measured_alone(scene_alone(mass_ratio, restitution, from, fold_amplitude(restitution) / deep),
+                            threads)}};
+  }
+  constexpr double ratio = 1.1, above = 1.2;  // of neighbours; of the release, so that `upper` is known
+  LossOfOne alone;
+  for (double c = least; c < bounds.most * (1 + off) * ratio; c *= ratio) {
+    Scene scene = scene_alone(mass_ratio, restitution, above * question.release / c, question.to / c);
+    set_components(scene, question, c);
+    alone.clearances.push_back(c);
+    alone.losses.push_back(measured_alone(scene, threads));
+  }
+  return alone;
 }
 
 std::vector<double> clearances_between(double least, double most, std::int64_t count) {
@@ -96,13 +146,15 @@ Clearances best_clearances(const DamperSetQuestion& question, std::int64_t count
                            const std::vector<double>& edges) {
   constexpr int narrow_steps = 16, wide_steps = 12;
   const Bounds bounds = bounds_of(question);
+  // From the clearance whose fold is at `lowest` down to the narrowest; a single damper may need up to 30
+  // times it.
+  const double from = count == 1 && has_components(question) ? bounds.narrowest : 1,
+               to = count == 1 ? 30 : bounds.narrowest;
   Clearances best;
   for (int narrow = 0; narrow < narrow_steps; ++narrow) {
-    // From the clearance whose fold is at `lowest` down to 0.4 times it; a single damper may need up to 30
-    // times it.
     const double c =
         std::min(bounds.most, bounds.lowest / bounds.fold *
-                                  power_of(count == 1 ? 30 : 0.4, double(narrow) / (narrow_steps - 1)));
+                                  (from * power_of(to / from, double(narrow) / (narrow_steps - 1))));
     for (int wide = 0; wide < (count == 1 ? 1 : wide_steps); ++wide) {
       const double end = bounds.most * power_of(0.3, double(wide) / wide_steps);
       if (count > 1 && !(end > c)) continue;
@@ -161,19 +213,15 @@ std::vector<double> in_releases(std::vector<double> lengths, double release) {
 DamperSet best_by_runs(const DamperSetQuestion& question, const Threads& threads,
                        const std::function<void(const std::string& doing)>& tell) {
   const double e = question.restitution;
-  const Bounds bounds = bounds_of(question);
   DamperSet set;
   set.edges = descending_amplitudes(question.upper, question.to, set_bins_in_decade);
   tell("what one damper does alone");
-  // The upper amplitude in units of the narrowest clearance tried, with its tolerance; 10 % more.
-  const double from =
-      1.1 * question.upper * bounds.fold / (0.4 * bounds.lowest) / (1 - question.clearance_off);
   // f hardly depends on the mass, and runs with a very light one take long.
   const double alone_mass = std::clamp(question.mass_ratio / double(question.count), 0.002, 0.05);
   const auto alone = [&](double restitution) {
-    return measured_alone(alone_mass, restitution, from, threads);
+    return measured_alone(question, alone_mass, restitution, threads);
   };
-  const LossAlone nominal = alone(e);
+  const LossOfOne nominal = alone(e);
   const Known exactly{nominal, nominal, nominal};
   const double off = question.restitution_off;
   const Known known = off == 0 ? exactly : Known{nominal, alone(e - off), alone(e + off)};
@@ -208,6 +256,7 @@ DamperSet best_by_runs(const DamperSetQuestion& question, const Threads& threads
       set.expected = expected;
     }
     for (std::size_t i = 0; i < run.mean.size(); ++i) {
+      if (!(expected[i] > viscous)) continue;
       const double ratio = std::clamp((run.mean[i] - viscous) / (expected[i] - viscous), 0.5, 2.0);
       for (std::vector<double>& column : clearances.columns) column[i] *= ratio;
     }
@@ -280,7 +329,31 @@ std::vector<Problem> problems_of(const DamperSetQuestion& question) {
   demand("restitution_off", question.restitution_off, 0, 0.4);
   demand("restitution", question.restitution, 0.1 + question.restitution_off, 0.9 - question.restitution_off);
   demand("damping_ratio", question.damping_ratio, 0, 0.1);
+  for (const auto& [field, value] : {std::pair("friction", question.friction), {"weight", question.weight}})
+    demand(field, value, 0, 1e6);
+  if (question.static_friction != 0)
+    demand("static_friction", question.static_friction, question.friction, 1e6);
+  demand("drag", question.drag, 0, 1e6 * question.mass_ratio);
+  if (const double held = locking_amplitude_of(question); !(question.to > held))
+    problems.push_back(
+        {"to", filled("must be > {}, up to which friction and weight keep these masses at rest in "
+                      "cavities of any clearance, got {}",
+                      rounded_text(held, 4), question.to)});
   return problems;
+}
+
+double locking_amplitude_of(const DamperSetQuestion& question) {
+  const double holds = std::max(question.friction, question.static_friction);
+  return locking_amplitude(1 / square_root(1 + question.mass_ratio), holds + question.weight);
+}
+
+void set_components(Scene& scene, const DamperSetQuestion& question, double length) {
+  scene.weight = question.weight / length;
+  for (SceneDamper& each : scene.dampers) {
+    each.friction = question.friction / length;
+    each.static_friction = question.static_friction / length;
+    each.drag = question.drag / each.mass_ratio;
+  }
 }
 
 Scene scene_of_set(const DamperSetQuestion& question, const std::vector<SceneDamper>& dampers) {
@@ -289,8 +362,10 @@ Scene scene_of_set(const DamperSetQuestion& question, const std::vector<SceneDam
   scene.x0 = 1;
   scene.dampers = dampers;
   for (SceneDamper& damper : scene.dampers) damper.clearance /= question.release;
+  set_components(scene, question, question.release);
   scene.until_time = 1e5;
-  scene.until_amplitude = 0.9 * question.to / question.release;
+  // With friction an amplitude a little below may never be reached.
+  scene.until_amplitude = (has_components(question) ? 1 : 0.9) * question.to / question.release;
   return scene;
 }
 

@@ -26,7 +26,16 @@ struct DamperSetQuestion {
   // Tolerances, in either direction: of each clearance independently, of the restitution of all alike.
   double clearance_off = 0.1;    // relative, 0 to 0.5
   double restitution_off = 0.1;  // absolute, 0 to 0.4
+  // What all cavities have (M18.2): mu g cos(alpha) and g sin(alpha), divided by Omega_n^2, in the unit of
+  // the amplitudes, >= 0; static_friction is 0 or at least friction. Their drag, each cavity's, divided by M
+  // Omega_n, 0 to 1e6 mass_ratio.
+  double friction = 0, static_friction = 0, weight = 0, drag = 0;
 };
+// Returns the amplitude up to which friction and weight hold all secondary masses (M15.14), 0 without them.
+// `to` must be larger.
+double locking_amplitude_of(const DamperSetQuestion& question);
+// Sets friction, weight and drag of a scene whose lengths are in units of `length`.
+void set_components(Scene& scene, const DamperSetQuestion& question, double length);
 inline constexpr std::int64_t most_set_dampers = 40;
 // Empty if it is valid. Fields: those of DamperSetQuestion.
 std::vector<Problem> problems_of(const DamperSetQuestion& question);

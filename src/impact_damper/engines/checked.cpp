@@ -105,9 +105,6 @@ std::vector<Problem> incompatibilities_of(const Scene& scene, const Engine& engi
       reject("wall", "linear", "cem engine has walls with laws of their own");
     if (!damper.restitution_by_speed.empty() && !std::holds_alternative<Restitution>(engine))
       reject("restitution", "one number", "restitution engine has one that depends on the speed");
-    else if (!damper.restitution_by_speed.empty() && has_components(scene))
-      problems.push_back({one ? "restitution" : damper_field(i, "restitution"),
-                          "must be one number beside friction, weight and drag"});
   }
   if (!scene.spring.is_linear() && !cem)
     problems.push_back({"spring", "must be linear with the " + std::string(name_of(engine)) +

@@ -261,6 +261,7 @@ class EndOfBranch {
           {BranchEventKind::grazing, last.point.back(), branch.orbits.back(), std::ssize(branch.orbits)});
       return;
     }
+    if (anchor_.point.empty()) return;  // the whole branch is that near to grazing
     for (const auto member : {&PoincareImage::slowest_impact, &PoincareImage::nearest_miss}) {
       if (!(last.image.*member && *(last.image.*member) < 1e-4)) continue;
       std::optional<Extrapolated> best;

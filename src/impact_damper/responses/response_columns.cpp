@@ -14,12 +14,24 @@ namespace {
 using enum Dimension;
 constexpr NumberRange any{}, counts = within(0, 9e15), flag = within(0, 1), periods = within(1, 64);
 
+bool is_among(const Scene& scene, Scenes scenes) {
+  switch (scenes) {
+    case Scenes::all:
+      return true;
+    case Scenes::of_one_damper:
+      return listed_dampers(scene) == 0;
+    case Scenes::of_list:
+      return listed_dampers(scene) > 0;
+    case Scenes::with_friction:
+      break;
+  }
+  return std::ranges::any_of(scene.dampers, [](const SceneDamper& each) { return each.holding() > 0; });
+}
 template <class Row>
-RowColumns<Row> those_of(const RowColumns<Row>& table, std::size_t dampers) {
-  const Scenes others = dampers > 0 ? Scenes::of_one_damper : Scenes::of_list;
+RowColumns<Row> those_of(const RowColumns<Row>& table, const Scene& scene) {
   RowColumns<Row> columns;
   std::copy_if(table.begin(), table.end(), std::back_inserter(columns),
-               [&](const RowColumn<Row>& each) { return each.scenes != others; });
+               [&](const RowColumn<Row>& each) { return is_among(scene, each.scenes); });
   return columns;
 }
 
@@ -36,7 +48,7 @@ std::optional<double> number_in(const NumberCell& cell) {
       cell);
 }
 
-RowColumns<SteadyState> steady_columns(std::size_t dampers) {
+RowColumns<SteadyState> steady_columns(const Scene& scene) {
   using S = SteadyState;
   static const RowColumns<S> table{
       {"period", ratio, periods, [](S& s) -> NumberCell { return s.period ? &*s.period : nullptr; }},
@@ -68,10 +80,10 @@ RowColumns<SteadyState> steady_columns(std::size_t dampers) {
       {"y", length, any, [](S& s) -> NumberCell { return &s.state.dampers[0].y; }, Scenes::of_one_damper},
       {"w", velocity, any, [](S& s) -> NumberCell { return &s.state.dampers[0].w; }, Scenes::of_one_damper},
   };
-  return those_of(table, dampers);
+  return those_of(table, scene);
 }
 
-RowColumns<OrbitPoint> orbit_columns(std::size_t dampers) {
+RowColumns<OrbitPoint> orbit_columns(const Scene& scene) {
   using P = OrbitPoint;
   static const RowColumns<P> table{
       {"period", ratio, periods, [](P& p) -> NumberCell { return &p.period; }},
@@ -93,12 +105,14 @@ RowColumns<OrbitPoint> orbit_columns(std::size_t dampers) {
       {"nearest_miss", length, at_least(0), [](P& p) -> NumberCell { return &p.nearest_miss; }},
       {"least_interval", time, at_least(0), [](P& p) -> NumberCell { return &p.least_interval; },
        Scenes::of_list},
+      {"stop_margin", acceleration, at_least(0), [](P& p) -> NumberCell { return &p.stop_margin; },
+       Scenes::with_friction},
       {"x", length, any, [](P& p) -> NumberCell { return &p.state.x; }},
       {"v", velocity, any, [](P& p) -> NumberCell { return &p.state.v; }},
       {"y", length, any, [](P& p) -> NumberCell { return &p.state.dampers[0].y; }, Scenes::of_one_damper},
       {"w", velocity, any, [](P& p) -> NumberCell { return &p.state.dampers[0].w; }, Scenes::of_one_damper},
   };
-  return those_of(table, dampers);
+  return those_of(table, scene);
 }
 
 DamperOfRow damper_of(SteadyState& steady, std::size_t number) {
@@ -178,7 +192,7 @@ void add(CsvTable& table, const SweepResponse& response) {
   table.add("way", ways);
   table.add(name_of(axis.number), field_of(axis.number).dimension, axis.values());
   table.add("end", ends);
-  add(table, steady_columns(dampers), states);
+  add(table, steady_columns(response.scene), states);
   add_dampers(table, dampers, states);
   for (const Column& column : linear_columns(response.scene, axis))
     table.add(std::string(column.name), column.dimension, column.numbers);
@@ -222,7 +236,7 @@ void add(CsvTable& table, const OrbitsResponse& response) {
   table.add("branch", numbers);
   table.add("event", events);
   table.add(std::string(name_of(parameter)), field_of(member_of(parameter)).dimension, values);
-  add(table, orbit_columns(dampers), points);
+  add(table, orbit_columns(response.scene), points);
   add_dampers(table, dampers, points);
 }
 

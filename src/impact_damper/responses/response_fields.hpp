@@ -35,7 +35,7 @@ namespace impact_damper {
 using NumberCell = std::variant<double*, std::int64_t*, bool*, std::optional<double>*>;
 std::optional<double> number_in(const NumberCell& cell);
 
-enum class Scenes { all, of_one_damper, of_list };
+enum class Scenes { all, of_one_damper, of_list, with_friction };
 template <class Row>
 struct RowColumn {
   std::string_view name;
@@ -46,9 +46,9 @@ struct RowColumn {
 };
 template <class Row>
 using RowColumns = std::vector<RowColumn<Row>>;
-// The columns of steady states and orbits. dampers: length of the scene's list.
-RowColumns<SteadyState> steady_columns(std::size_t dampers);
-RowColumns<OrbitPoint> orbit_columns(std::size_t dampers);
+// The columns of steady states and orbits of this scene.
+RowColumns<SteadyState> steady_columns(const Scene& scene);
+RowColumns<OrbitPoint> orbit_columns(const Scene& scene);
 
 // The part of a row that one damper of a list has.
 struct DamperOfRow {

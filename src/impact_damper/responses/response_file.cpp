@@ -127,7 +127,7 @@ void describe(JsonFields fields, std::vector<SteadyState>& way, const Scene& sce
     steady.means.emplace();
     steady.impacts_by_damper.resize(scene.dampers.size());
   }
-  fields.columns(steady_columns(dampers), way);
+  fields.columns(steady_columns(scene), way);
   fields.columns_of_dampers(dampers, way);
   for (SteadyState& each : way)
     if (fields.reads() && dampers == 0 && each.means) each.impacts_by_damper = {each.impacts};
@@ -266,7 +266,7 @@ void describe(JsonFields fields, OrbitBranch& branch, const Scene& scene) {
     point.impacts_by_damper.resize(scene.dampers.size());
     point.state.dampers.resize(scene.dampers.size());
   }
-  fields.columns(orbit_columns(dampers), branch.points);
+  fields.columns(orbit_columns(scene), branch.points);
   fields.columns_of_dampers(dampers, branch.points);
   for (OrbitPoint& each : branch.points)
     if (fields.reads() && dampers == 0) each.impacts_by_damper = {each.impacts};

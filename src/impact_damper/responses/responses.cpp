@@ -17,6 +17,7 @@ OrbitPoint point_of(const Orbit& orbit, double value, double amplitude) {
                    .slowest_impact = orbit.slowest_impact,
                    .nearest_miss = orbit.nearest_miss,
                    .least_interval = orbit.least_interval,
+                   .stop_margin = orbit.stop_margin,
                    .state = release_of(orbit.scene),
                    .impacts_by_damper = std::vector<ImpactCounts>(orbit.scene.dampers.size())};
   point.multipliers.resize(4);

@@ -110,7 +110,9 @@ class ChatteringLimit {
       if (!(masses_.nu[i] * square <= 2 * moves_little * per_moves) || masses_.away[i] != side) continue;
       const Real moves = masses_.nu[i] * square / per_moves;
       if (!(moves <= moves_little)) continue;
-      if (!masses_.held[i] && !masses_.is_settled(i, square_root(square), tolerance_)) continue;
+      if (!masses_.held[i] &&
+          !masses_.is_settled(i, square_root(square), Real(tolerance_ * (1 - masses_.e[i]))))
+        continue;
       // This one meets its wall in this instant, maybe together with others: an impact (M17.2) comes first.
       if (!masses_.held[i] && masses_.u[i] == 0 && masses_.u1[i] < 0) continue;
       all.mass += masses_.nu[i];

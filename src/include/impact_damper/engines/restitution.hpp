@@ -67,7 +67,7 @@ Outcome run_restitution(const System<Real, Force>& system, const Scene& scene, c
     accumulation = 0;
     if (speed == 0) return flight.sticks();
     if (!(push > 0) || e == 1) return false;
-    if (varies && !is_settled(by_speed, speed, tolerance)) return false;
+    if (varies && !is_settled(by_speed, speed, Real(tolerance * (1 - e)))) return false;
     accumulation = 2 * speed / (push * (1 - e));
     const Real change_of_push = -away * y[3];
     // The acceleration changes in flight, and by the impacts (M6.2).

@@ -534,11 +534,22 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
     one.by_friction = phi > 0 ? Real((1 - r_2) / (1 - e * e * r_2)) : Real(0);
     return one;
   }
+  // Whether the restitution of all its bounces is that at rest (M18.19).
+  bool is_settled(const Chattering& one, const Real& a) const {
+    const std::size_t i = one.index;
+    if (!masses_.varies(i)) return true;
+    const Real p = masses_.e[i] * square_root(comes_back(i, a));
+    return masses_.is_settled(i, one.landing, Real(tolerance_ * (1 - p)));
+  }
   // Of the masses in joins_ joins as many as can (M18.23), those that are over first before others.
   bool join_most(Motion& motion, const Real& side, const Joined& all) {
     chattering_.clear();
-    for (std::size_t i = 0; i < masses_.size(); ++i)
-      if (joins_[i]) chattering_.push_back(bounces_of(i, all));
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      if (!joins_[i]) continue;
+      chattering_.push_back(bounces_of(i, all));
+      joins_[i] = is_settled(chattering_.back(), all.a);
+      if (!joins_[i]) chattering_.pop_back();
+    }
     std::sort(chattering_.begin(), chattering_.end(), [](const Chattering& one, const Chattering& other) {
       return one.lasts < other.lasts || (one.lasts == other.lasts && one.index < other.index);
     });

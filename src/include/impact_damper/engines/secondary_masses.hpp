@@ -47,9 +47,9 @@ struct SecondaryMasses {
   Real restitution_at(std::size_t i, const Real& speed) const {
     return varies(i) ? impact_damper::restitution_at(by_speed[i], absolute(speed)) : e[i];
   }
-  // Whether it is that at rest for all impacts up to this speed (M18.19).
-  bool is_settled(std::size_t i, const Real& speed, const Real& tolerance) const {
-    return !varies(i) || impact_damper::is_settled(by_speed[i], speed, tolerance);
+  // Whether it is that at rest, within `most`, for all impacts up to this speed (M18.19).
+  bool is_settled(std::size_t i, const Real& speed, const Real& most) const {
+    return !varies(i) || impact_damper::is_settled(by_speed[i], speed, most);
   }
   bool varies(std::size_t i) const { return !by_speed.empty() && !by_speed[i].empty(); }
 

@@ -21,10 +21,10 @@ Real restitution_at(const Pairs& pairs, const Real& speed) {
   if (next == pairs.end()) return Real(e);
   return e + (speed - from) * (Real((*next)[1]) - e) / (Real((*next)[0]) - from);
 }
-// Whether the restitution of all impacts up to this speed is e(0), within the tolerance of (M18.19).
+// Whether the restitution of all impacts up to this speed departs from e(0) by `most` at most (M18.19).
 template <class Real>
-bool is_settled(const Pairs& pairs, const Real& speed, const Real& tolerance) {
-  const Real e = pairs.front()[1], most = tolerance * (1 - e);
+bool is_settled(const Pairs& pairs, const Real& speed, const Real& most) {
+  const Real e = pairs.front()[1];
   const auto departs = [&](const auto& pair) {
     return Real(pair[0]) < speed && !(absolute(Real(pair[1] - e)) <= most);
   };

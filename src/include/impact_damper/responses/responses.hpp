@@ -44,6 +44,7 @@ struct OrbitPoint {
   double amplitude = 0;                      // largest |x|
   Multipliers multipliers = Multipliers(4);  // with a list the four largest
   std::optional<double> slowest_impact, nearest_miss, least_interval;
+  std::optional<double> stop_margin;            // with friction
   SceneState state;                             // at phase 0 of the force
   std::vector<ImpactCounts> impacts_by_damper;  // the same for each damper
 };
