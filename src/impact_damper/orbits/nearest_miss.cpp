@@ -22,15 +22,16 @@ class NearestMiss {
   std::optional<double> find() {
     for (std::size_t n = 0; n < run_.chain.motions.size(); ++n) {
       const MotionChain::Motion& motion = run_.chain.motions[n];
-      if (of_.has_components) {
-        if (now_.comes_to_settled_event(n)) {
-          now_.pass_settled_event(n);
+      if (of_.rigid) {
+        if (now_.comes_to_rigid_event(n)) {
+          now_.pass_rigid_event(n);
           note_stops();
         }
-        pass_with_components(motion);
-      } else if (of_.rigid) {
-        if (now_.comes_to_rigid_event(n)) now_.pass_rigid_event(n);
-        pass_masses(motion, now_.joined_mass());
+        if (of_.has_components) {
+          pass_with_components(motion);
+        } else {
+          pass_masses(motion, now_.joined_mass());
+        }
       } else {
         now_.come_to_compliant_events(n);
         now_.pass_compliant_events(n);
