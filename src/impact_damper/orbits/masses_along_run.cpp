@@ -64,7 +64,8 @@ double MassesAlongRun::acceleration(double time) const {
   double force = of_.force.amplitude * of_.force.phase(time).sin - 2 * of_.zeta * v - x;
   for (std::size_t i = 0; i < masses.size(); ++i) {
     const VariationalCoefficients::OfDamper& its = of_.dampers[i];
-    force += its.nu * (masses[i].wall == 0 ? its.friction * masses[i].slides : -of_.weight);
+    const bool free = masses[i].wall == 0;
+    force += its.nu * (free ? its.friction * masses[i].slides + its.drag * masses[i].w : -of_.weight);
   }
   return force / joined_mass();
 }
@@ -104,6 +105,11 @@ bool MassesAlongRun::comes_to_rigid_event(std::size_t n) {
     while (next_settled_ < all.size() && all[next_settled_].motions == n) ++next_settled_;
     settled_ = std::span(all).subspan(first, next_settled_ - first);
     if (settled_.empty()) return false;
+    for (const MotionChain::Settled& each : settled_) {  // y' + d y since the last event (M13.33)
+      Mass& mass = masses[std::size_t(each.damper)];
+      if (mass.wall == 0) mass.w -= of_.dampers[std::size_t(each.damper)].drag * (each.place.y - mass.y);
+      mass.y = each.place.y;
+    }
   } else if (impacts.empty() && !some_begin_at(n)) {
     if (take_contacts(n)) continued = false;
     return false;

@@ -25,6 +25,7 @@ struct VariationalCoefficients {
     double nu, e, clearance;
     double stiffness = 0, damping = 0;   // compliant walls: K and gamma of (M17.9)
     double friction = 0, holding = 0;    // phi and phi_s
+    double drag = 0;                     // d
     std::optional<UnforcedModes> modes;  // of their contacts
   };
 
@@ -42,6 +43,7 @@ struct VariationalCoefficients {
           OfDamper{.nu = each.mass_ratio, .e = each.restitution, .clearance = each.clearance, .modes = {}});
       damper.friction = each.friction;
       damper.holding = each.holding();
+      damper.drag = each.drag;
       if (!exact) continue;
       damper.modes.emplace(System<double, NoForcing<double>>(scene, each),
                            zeta_m<double>(each, exact->calibration));
@@ -62,7 +64,7 @@ struct VariationalCoefficients {
 // For each motion n of the run, from 0, the caller calls comes_to_rigid_event(n) and, if that is true,
 // pass_rigid_event(n), or with compliant walls come_to_compliant_events(n) and pass_compliant_events(n). Then
 // it advances y and y' of the masses in flight to the end of the motion, as far as it needs them, and calls
-// pass(motion).
+// pass(motion). With drag y' may be advanced without it where y is not advanced: the next event adds it.
 class MassesAlongRun {
  public:
   static constexpr int held_by_friction = 2;  // a value of Mass::wall: held between the walls
@@ -107,7 +109,7 @@ class MassesAlongRun {
   double joined_mass() const;
   // x'' with rigid walls.
   double acceleration(double time) const;
-  // -(x'' + y'') of a mass in flight.
+  // What is constant in -(x'' + y'') of a mass in flight, to which drag adds d y'.
   double pull(std::size_t i) const { return of_.dampers[i].friction * masses[i].slides + of_.weight; }
 
   double x, v;

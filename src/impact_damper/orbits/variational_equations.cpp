@@ -42,20 +42,22 @@ int pieces_of(double loss) { return loss < most_pieces ? 1 + int(loss) : most_pi
 // Whether even most_pieces pieces contract by more than exp(-36) each, a rounding error: directions are lost.
 bool is_lost(double loss) { return loss > 36.0 * most_pieces; }
 
-// The propagator of changes while several masses push their compliant walls (M13.27).
+// The propagator of changes while several masses push their compliant walls (M13.27), or slide in a fluid
+// (M13.33).
 class JointPropagator {
  public:
-  // in_contact: indices of these masses. with_force: for changes of the force, too.
-  JointPropagator(const VariationalCoefficients& of, std::span<const std::size_t> in_contact, double duration,
-                  bool with_force)
-      : in_contact_(in_contact) {
+  // in_contact: indices of these masses. mass: of the primary mass and all that sticks to it. with_force: for
+  // changes of the force, too.
+  JointPropagator(const VariationalCoefficients& of, std::span<const std::size_t> in_contact, double mass,
+                  double duration, bool with_force)
+      : in_contact_(in_contact), mass_(mass) {
     const std::size_t n = 2 + 2 * in_contact.size() + (with_force ? 4 : 0);
     double rate = with_force ? of.force.frequency : 0, all_k = 0, most_k = 0;
     for (const std::size_t i : in_contact) {
       const OfDamper& each = of.dampers[i];
       all_k += each.nu * each.stiffness;
       most_k = std::max(most_k, each.stiffness);
-      rate += (1 + each.nu) * each.damping;
+      rate += (1 + each.nu) * (each.damping + each.drag);
     }
     rate += 2 * of.zeta + std::sqrt(1 + all_k + most_k);
     matrix_ =
@@ -100,11 +102,12 @@ class JointPropagator {
     if (s.size() > n) a += s[n];
     for (std::size_t k = 0; k < in_contact_.size(); ++k) {
       const OfDamper& each = of.dampers[in_contact_[k]];
-      const double push = each.damping * s[3 + 2 * k] + each.stiffness * s[2 + 2 * k];
+      const double push = (each.damping + each.drag) * s[3 + 2 * k] + each.stiffness * s[2 + 2 * k];
       a += each.nu * push;
       rates[2 + 2 * k] = s[3 + 2 * k];
       rates[3 + 2 * k] = -push;
     }
+    a /= mass_;
     rates[0] = s[1], rates[1] = a;
     for (std::size_t k = 0; k < in_contact_.size(); ++k) rates[3 + 2 * k] -= a;
     if (s.size() == n) return;
@@ -116,6 +119,7 @@ class JointPropagator {
   }
 
   std::span<const std::size_t> in_contact_;
+  double mass_;
   // Rows and columns of x, x', q and q' of each mass in contact, and (g, h, a, b) of (M13.27).
   Matrix matrix_;
 };
@@ -130,7 +134,7 @@ void find_rates(const VariationalCoefficients& of, const MassesAlongRun& now, do
     for (std::size_t i = 0; i < now.masses.size(); ++i) {
       const bool free = now.masses[i].wall == 0;
       all[index_of_y(i)] = free ? now.masses[i].w : 0;
-      all[index_of_w(i)] = free ? -(all[1] + now.pull(i)) : 0;
+      all[index_of_w(i)] = free ? -(all[1] + now.pull(i) + of.dampers[i].drag * now.masses[i].w) : 0;
     }
     return;
   }
@@ -149,7 +153,7 @@ void find_rates(const VariationalCoefficients& of, const MassesAlongRun& now, do
   for (std::size_t i = 0; i < now.masses.size(); ++i) all[index_of_w(i)] -= a;
 }
 
-// The saltation matrix of an event at rigid walls (M13.4), with friction or weight (13.11).
+// The saltation matrix of an event at rigid walls (M13.4), with friction, weight or drag (13.11).
 class RigidSaltation {
  public:
   // All must outlive this object. Carried::one_sided and stop_margin are kept up to date.
@@ -180,7 +184,7 @@ class RigidSaltation {
   void apply(ChangeOfState& s, ByForce&& by_force) const {
     double earlier = 0;  // by how much the event comes earlier after this change
     for (const Condition& each : conditions_)
-      earlier += (each.index > 0 ? s[each.index] : by_force() - 2 * of_.zeta * s[1] - s[0]) / each.rate;
+      earlier += (each.index > 0 ? s[each.index] : by_force() + change_in_band(s)) / each.rate;
     jump(s);
     if (conditions_.empty()) return;
     earlier /= double(conditions_.size());
@@ -195,6 +199,7 @@ class RigidSaltation {
     double rate;
   };
 
+  // Finds the coefficients of (M13.23) and (M13.24), which is (M13.7) for one mass.
   void find_shares() {
     const double joined_mass = now_.joined_mass();
     gain_.assign(now_.masses.size(), 0.0);
@@ -215,8 +220,10 @@ class RigidSaltation {
     all_stay_ = true;
     for (std::size_t i = 0; i < now_.masses.size(); ++i) {
       const MassesAlongRun::Mass& mass = now_.masses[i];
-      const bool stops = mass.slides_before != 0 && (mass.wall != 0 || mass.slides == -mass.slides_before);
-      if (!stops) continue;
+      // One that joins its wall at another's stop has chattered there, and no speed of its own sets a time.
+      const bool turns = mass.slides_before != 0 && mass.slides == -mass.slides_before;
+      const bool holds = mass.slides_before != 0 && mass.wall != 0 && !mass.joins_place;
+      if (!turns && !holds) continue;
       all_stay_ = all_stay_ && mass.wall != 0;
       const OfDamper& its = of_.dampers[i];
       const double rate = rates_before_[index_of_w(i)];
@@ -227,7 +234,7 @@ class RigidSaltation {
         const double held = rates_after_[1] + its.nu / (now_.joined_mass() + its.nu) * own;  // x'', if it is
         margin = std::min(margin, std::fabs(std::fabs(held + of_.weight) - its.holding));
       }
-      if (!(all_.stop_margin && *all_.stop_margin <= margin)) all_.stop_margin = margin;
+      note_margin(margin);
     }
     if (!conditions_.empty()) return;
     // Releases (M13.31), at which the rates jump only where phi_s > phi (M13.32). Whoever is let go at one
@@ -236,10 +243,21 @@ class RigidSaltation {
       const MassesAlongRun::Mass& mass = now_.masses[i];
       const OfDamper& its = of_.dampers[i];
       if (mass.wall_before == 0 || mass.wall != 0 || !(its.holding > its.friction)) continue;
-      conditions_.push_back({0, of_.force.amplitude * of_.force.frequency * of_.force.phase(time).cos -
-                                    2 * of_.zeta * rates_before_[1] - rates_before_[0]});
+      const double by_force = of_.force.amplitude * of_.force.frequency * of_.force.phase(time).cos;
+      conditions_.push_back({0, by_force + change_in_band(rates_before_)});
+      note_margin(std::fabs(conditions_.back().rate));
       break;
     }
+  }
+  void note_margin(double margin) {
+    if (!(all_.stop_margin && *all_.stop_margin <= margin)) all_.stop_margin = margin;
+  }
+  // The change of (1 + sigma) x'' without that of the force.
+  double change_in_band(const ChangeOfState& s) const {
+    double change = -2 * of_.zeta * s[1] - s[0];
+    for (std::size_t i = 0; i < of_.dampers.size(); ++i)
+      change += of_.dampers[i].nu * of_.dampers[i].drag * s[index_of_w(i)];
+    return change;
   }
   // Multiplies a change by the derivative D of the jump, (M13.23) and (M13.24).
   void jump(ChangeOfState& s) const {
@@ -295,15 +313,20 @@ class VariationalEquations {
         pass_compliant_events(n);
       }
       const MotionChain::Motion& motion = run_.chain.motions[n];
-      if (of_.rigid || now_.in_contact.empty()) {
+      find_coupled();
+      if (coupled_.empty()) {
         pass_flight(motion);
-      } else if (now_.in_contact.size() > 1) {
-        pass_joint_contact(motion);
+      } else if (of_.rigid || coupled_.size() > 1) {
+        pass_coupled(motion);
       } else if (const UnforcedModes& modes = *of_.dampers[now_.in_contact.front()].modes; modes.coupled) {
         pass_contact<ContactWithoutModes<double, Unforced>>(modes, motion);
       } else {
         pass_contact<Contact<double, Unforced>>(modes, motion);
       }
+      if (of_.rigid)
+        for (std::size_t i = 0; i < now_.masses.size(); ++i)
+          if (now_.masses[i].wall == 0)
+            now_.masses[i].w += now_.v - motion.v - now_.pull(i) * motion.duration;
       now_.pass(motion);
     }
     if (along_) {
@@ -375,7 +398,7 @@ class VariationalEquations {
   // In how many pieces a motion is taken. rate_of_loss: minus the divergence, the rate at which volumes
   // contract. A propagator by squaring (M13.27) loses digits where it contracts them much.
   int pieces_for(double rate_of_loss, double duration) {
-    if (!after_step_ && now_.in_contact.size() < 2) return 1;
+    if (!after_step_ && coupled_.size() < 2) return 1;
     const double loss = rate_of_loss * duration;
     if (is_lost(loss)) all_.lost = std::max(all_.lost, 2 * std::max<std::size_t>(1, now_.in_contact.size()));
     return pieces_of(loss);
@@ -408,9 +431,6 @@ class VariationalEquations {
             const Propagator<double> impulse = oscillator.propagate(tau);
             return std::array<double, 4>{impulse.s / mass, impulse.v / mass, 0, 0};
           });
-    if (!of_.rigid) return;
-    for (std::size_t i = 0; i < now_.masses.size(); ++i)
-      if (now_.masses[i].wall == 0) now_.masses[i].w += now_.v - motion.v - now_.pull(i) * motion.duration;
   }
   // Carries changes through a motion in which one mass pushes a compliant wall. The columns of the propagator
   // are contacts without a force, each from a unit state.
@@ -443,14 +463,22 @@ class VariationalEquations {
           });
     }
   }
-  // The same where several do.
-  void pass_joint_contact(const MotionChain::Motion& motion) {
-    double rate_of_loss = 2 * of_.zeta;
-    for (const std::size_t i : now_.in_contact)
-      rate_of_loss += (1 + of_.dampers[i].nu) * of_.dampers[i].damping;
+  // Sets coupled_ to the masses that push compliant walls or slide in a fluid.
+  void find_coupled() {
+    coupled_.clear();
+    for (std::size_t i = 0; i < now_.masses.size(); ++i)
+      if (of_.rigid ? is_in_fluid(i) : now_.masses[i].wall != 0) coupled_.push_back(i);
+  }
+  bool is_in_fluid(std::size_t i) const { return now_.masses[i].wall == 0 && of_.dampers[i].drag != 0; }
+  // Carries changes through a motion in which several masses push compliant walls, or some slide in a fluid.
+  void pass_coupled(const MotionChain::Motion& motion) {
+    const double mass = of_.rigid ? now_.joined_mass() : 1;
+    double rate_of_loss = 2 * of_.zeta / mass;
+    for (const std::size_t i : coupled_)
+      rate_of_loss += (1 + of_.dampers[i].nu / mass) * (of_.dampers[i].damping + of_.dampers[i].drag);
     const int pieces = pieces_for(rate_of_loss, motion.duration);
     const double duration = motion.duration / pieces;
-    const JointPropagator propagator(of_, now_.in_contact, duration, along_ != nullptr);
+    const JointPropagator propagator(of_, coupled_, mass, duration, along_ != nullptr);
     carry_all(pieces, [&](ChangeOfState& s, int piece) {
       const double x = s[0], v = s[1];
       propagator.carry(s, change_of_force(s, motion.begin + duration * piece));
@@ -460,7 +488,7 @@ class VariationalEquations {
   // Carries a change of y and y' of all masses that fly, x and v being those of x and x' before.
   void carry_free(ChangeOfState& s, double duration, double x, double v) const {
     for (std::size_t i = 0; i < now_.masses.size(); ++i) {
-      if (now_.masses[i].wall != 0) continue;
+      if (now_.masses[i].wall != 0 || is_in_fluid(i)) continue;
       s[index_of_y(i)] += duration * s[index_of_w(i)] - (s[0] - x - duration * v);
       s[index_of_w(i)] -= s[1] - v;
     }
@@ -514,6 +542,7 @@ class VariationalEquations {
   const std::function<void()>& after_step_;
   // y is not followed, nor y' with compliant walls, where no matrix depends on them.
   MassesAlongRun now_;
+  std::vector<std::size_t> coupled_;
   Carried all_;
   RigidSaltation saltation_;
   std::vector<std::size_t> dimensions_lost_;  // by each mass while it sticks or is held
