@@ -384,6 +384,23 @@ TEST_CASE("two masses held by friction part from their cavities at one instant")
   }
 }
 
+TEST_CASE("at the edge of a band the drag of another mass decides, where it turns x'''") {
+  // x'' = 1 = phi_s of the first mass, and 2 x''' = -v - 1/2, the latter by the second mass in its fluid.
+  for (const double v : {-0.25, -0.75}) {
+    const Scene scene{.x0 = -2,
+                      .v0 = v,
+                      .until_time = 0.01,
+                      .dampers = {{.mass_ratio = 1, .y0 = 0.5, .friction = 0.5, .static_friction = 1},
+                                  {.mass_ratio = 0.5, .y0 = 0.5, .drag = 1}}};
+    CAPTURE(v);
+    for (const Engine& engine : std::vector<Engine>{Exact{}, Restitution{}}) {
+      CAPTURE(name_of(engine));
+      const Run run = simulate(scene, engine, everything({{0, 0.01, 2}}));
+      CHECK((run.history->dampers[0].w[1] == 0) == (v == -0.25));
+    }
+  }
+}
+
 TEST_CASE("static friction alone holds a mass that then slides without loss") {
   for (const Engine& engine : engines) {
     CAPTURE(name_of(engine));

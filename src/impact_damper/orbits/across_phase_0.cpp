@@ -52,9 +52,12 @@ std::optional<Step> across_impact(const Scene& scene, const Cavity& cavity, cons
     std::vector<double> pulls;
     for (std::size_t i = 0; i < scene.dampers.size(); ++i) {
       const double its_w = at[index_of_w(i)];
-      const double friction = scene.dampers[i].friction * (its_w > 0 ? 1 : its_w < 0 ? -1 : 0);
-      a += scene.dampers[i].mass_ratio * friction;
-      pulls.push_back(friction + scene.weight);
+      const double in_cavity = scene.dampers[i].friction * (its_w > 0   ? 1
+                                                            : its_w < 0 ? -1
+                                                                        : 0) +
+                               scene.dampers[i].drag * its_w;
+      a += scene.dampers[i].mass_ratio * in_cavity;
+      pulls.push_back(in_cavity + scene.weight);
     }
     StateVector all{at[1], a};
     for (std::size_t i = 0; i < pulls.size(); ++i)

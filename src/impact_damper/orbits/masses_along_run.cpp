@@ -64,7 +64,8 @@ double MassesAlongRun::acceleration(double time) const {
   double force = of_.force.amplitude * of_.force.phase(time).sin - 2 * of_.zeta * v - x;
   for (std::size_t i = 0; i < masses.size(); ++i) {
     const VariationalCoefficients::OfDamper& its = of_.dampers[i];
-    force += its.nu * (masses[i].wall == 0 ? its.friction * masses[i].slides : -of_.weight);
+    const bool free = masses[i].wall == 0;
+    force += its.nu * (free ? its.friction * masses[i].slides + its.drag * masses[i].w : -of_.weight);
   }
   return force / joined_mass();
 }
@@ -98,7 +99,18 @@ bool MassesAlongRun::take_contacts(std::size_t n) {
 
 bool MassesAlongRun::comes_to_rigid_event(std::size_t n) {
   come_to(n);
-  if (impacts.empty() && !some_begin_at(n)) {
+  if (of_.has_components) {
+    const auto& all = run_.chain.settled;
+    const std::size_t first = next_settled_;
+    while (next_settled_ < all.size() && all[next_settled_].motions == n) ++next_settled_;
+    settled_ = std::span(all).subspan(first, next_settled_ - first);
+    if (settled_.empty()) return false;
+    for (const MotionChain::Settled& each : settled_) {  // y' + d y since the last event (M13.33)
+      Mass& mass = masses[std::size_t(each.damper)];
+      if (mass.wall == 0) mass.w -= of_.dampers[std::size_t(each.damper)].drag * (each.place.y - mass.y);
+      mass.y = each.place.y;
+    }
+  } else if (impacts.empty() && !some_begin_at(n)) {
     if (take_contacts(n)) continued = false;
     return false;
   }
@@ -139,9 +151,15 @@ void MassesAlongRun::pass_rigid_event(std::size_t n) {
   for (std::size_t i = 0; i < masses.size(); ++i) {
     const VariationalCoefficients::OfDamper& its = of_.dampers[i];
     masses[i].wall_before = masses[i].wall;
+    masses[i].slides_before = masses[i].slides;
     if (masses[i].is_active) gained += its.nu * (1 + its.e) * masses[i].w / active_mass;
   }
-  take_contacts(n);
+  if (of_.has_components) {
+    take_settled();
+  } else {
+    take_contacts(n);
+    for (const std::size_t i : in_contact) masses[i].y = position_of_wall(i);
+  }
 
   v += gained;
   double joined = 0;
@@ -153,32 +171,25 @@ void MassesAlongRun::pass_rigid_event(std::size_t n) {
     mass.joins = mass.wall != 0 && !stays;
     mass.w = mass.is_active ? -of_.dampers[i].e * mass.w : mass.w - gained;
     if (mass.joins) joined += of_.dampers[i].nu * mass.w / joined_to;
-    if (mass.wall != 0) mass.y = position_of_wall(i);
   }
   v += joined;
-  for (Mass& mass : masses) mass.w = mass.wall != 0 ? 0 : mass.w - joined;
-}
-
-bool MassesAlongRun::comes_to_settled_event(std::size_t n) {
-  come_to(n);
-  const auto& all = run_.chain.settled;
-  const std::size_t first = next_settled_;
-  while (next_settled_ < all.size() && all[next_settled_].motions == n) ++next_settled_;
-  settled_ = std::span(all).subspan(first, next_settled_ - first);
-  if (settled_.empty()) return false;
-  continued = false;
-  find_active();
-  return true;
-}
-
-void MassesAlongRun::pass_settled_event(std::size_t n) {
-  double gained = 0;
+  for (Mass& mass : masses) {
+    mass.w = mass.wall != 0 ? 0 : mass.w - joined;
+    mass.joins_place = mass.joins;
+  }
+  if (!of_.has_components) return;
+  for (const MotionChain::Settled& each : settled_) masses[std::size_t(each.damper)].w = each.place.w;
+  const double pressed = n == 0 ? acceleration(run_.chain.motions[n].begin) + of_.weight : 0;
   for (std::size_t i = 0; i < masses.size(); ++i) {
     Mass& mass = masses[i];
-    mass.wall_before = mass.wall;
-    mass.slides_before = mass.slides;
-    if (mass.is_active) gained += of_.dampers[i].nu * (1 + of_.dampers[i].e) * mass.w / active_mass;
+    mass.joins_place = mass.joins && mass.wall != held_by_friction &&
+                       (n > 0 || mass.wall * pressed > of_.dampers[i].holding);
   }
+}
+
+// Sets where the masses are, and how, from the event that settled them; y' stays that before.
+void MassesAlongRun::take_settled() {
+  in_contact.clear();
   for (const MotionChain::Settled& each : settled_) {
     const auto i = std::size_t(each.damper);
     Mass& mass = masses[i];
@@ -186,24 +197,7 @@ void MassesAlongRun::pass_settled_event(std::size_t n) {
     mass.wall = !each.held ? 0 : left ? 1 : right ? -1 : held_by_friction;
     mass.slides = each.slides;
     mass.y = each.place.y;
-  }
-  in_contact.clear();
-  double joined = 0;
-  const double joined_to = joined_mass();
-  for (std::size_t i = 0; i < masses.size(); ++i) {
-    Mass& mass = masses[i];
-    if (mass.wall != 0) in_contact.push_back(i);
-    mass.joins = mass.wall != 0 && !(mass.wall_before != 0 && (impacts.empty() || mass.is_active));
-    const double after_impact = mass.is_active ? -of_.dampers[i].e * mass.w : mass.w - gained;
-    if (mass.joins) joined += of_.dampers[i].nu * after_impact / joined_to;
-  }
-  v += gained + joined;
-  for (const MotionChain::Settled& each : settled_) masses[std::size_t(each.damper)].w = each.place.w;
-  const double pressed = n == 0 ? acceleration(run_.chain.motions[n].begin) + of_.weight : 0;
-  for (std::size_t i = 0; i < masses.size(); ++i) {
-    Mass& mass = masses[i];
-    mass.joins_place = mass.joins && mass.wall != held_by_friction &&
-                       (n > 0 || mass.wall * pressed > of_.dampers[i].holding);
+    if (each.held) in_contact.push_back(i);
   }
 }
 

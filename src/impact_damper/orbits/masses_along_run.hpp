@@ -25,6 +25,7 @@ struct VariationalCoefficients {
     double nu, e, clearance;
     double stiffness = 0, damping = 0;   // compliant walls: K and gamma of (M17.9)
     double friction = 0, holding = 0;    // phi and phi_s
+    double drag = 0;                     // d
     std::optional<UnforcedModes> modes;  // of their contacts
   };
 
@@ -42,6 +43,7 @@ struct VariationalCoefficients {
           OfDamper{.nu = each.mass_ratio, .e = each.restitution, .clearance = each.clearance, .modes = {}});
       damper.friction = each.friction;
       damper.holding = each.holding();
+      damper.drag = each.drag;
       if (!exact) continue;
       damper.modes.emplace(System<double, NoForcing<double>>(scene, each),
                            zeta_m<double>(each, exact->calibration));
@@ -62,7 +64,7 @@ struct VariationalCoefficients {
 // For each motion n of the run, from 0, the caller calls comes_to_rigid_event(n) and, if that is true,
 // pass_rigid_event(n), or with compliant walls come_to_compliant_events(n) and pass_compliant_events(n). Then
 // it advances y and y' of the masses in flight to the end of the motion, as far as it needs them, and calls
-// pass(motion). With friction or weight it calls comes_to_settled_event(n) and pass_settled_event(n) instead.
+// pass(motion). With drag y' may be advanced without it where y is not advanced: the next event adds it.
 class MassesAlongRun {
  public:
   static constexpr int held_by_friction = 2;  // a value of Mass::wall: held between the walls
@@ -74,10 +76,10 @@ class MassesAlongRun {
     // Whether at the last event at rigid walls it had an impact, stuck from then on, got an impulse from its
     // wall (M17.3).
     bool meets = false, joins = false, is_active = false;
+    bool joins_place = false;  // it joined with the change of y, too (M13.24)
     // With friction: the sign of y' with which it acts, 0 where the mass does not slide, and the same before
-    // the last event. With friction or weight: whether the mass joined with the change of y, too (M13.24).
+    // the last event.
     double slides = 0, slides_before = 0;
-    bool joins_place = false;
   };
 
   // Both must outlive this object.
@@ -85,13 +87,11 @@ class MassesAlongRun {
 
   // Whether there is an event at rigid walls between the motions n - 1 and n: impacts, or sticking that
   // begins. If so, finds which masses it acts on; x', y' and `wall` are still those before. If not, ends the
-  // sticking that ends there, which changes no speed.
+  // sticking that ends there, which changes no speed. With friction or weight stops and releases are events,
+  // too, and the first one is the beginning of the run.
   bool comes_to_rigid_event(std::size_t n);
   // Applies that event to x', y, y' and `wall` of all masses.
   void pass_rigid_event(std::size_t n);
-  // The same for the events of a run with friction or weight, the first of which is its beginning.
-  bool comes_to_settled_event(std::size_t n);
-  void pass_settled_event(std::size_t n);
   // Sets `impacts` and `continued` for the events at compliant walls between the motions n - 1 and n: touches
   // and ends of contacts, for which ends_contact() is true.
   void come_to_compliant_events(std::size_t n);
@@ -107,9 +107,9 @@ class MassesAlongRun {
   double position_of_wall(std::size_t i) const { return masses[i].wall > 0 ? 0 : of_.dampers[i].clearance; }
   // The primary mass and all that sticks to it, divided by the primary mass.
   double joined_mass() const;
-  // x'' with friction or weight.
+  // x'' with rigid walls.
   double acceleration(double time) const;
-  // -(x'' + y'') of a mass in flight.
+  // What is constant in -(x'' + y'') of a mass in flight, to which drag adds d y'.
   double pull(std::size_t i) const { return of_.dampers[i].friction * masses[i].slides + of_.weight; }
 
   double x, v;
@@ -126,6 +126,7 @@ class MassesAlongRun {
     return next_contact_ < contacts.size() && contacts[next_contact_].first == n;
   }
   bool take_contacts(std::size_t n);
+  void take_settled();
   void find_active();
   double absolute_velocity_before(std::size_t n, std::size_t damper) const;
 

@@ -6,7 +6,9 @@
 #include "impact_damper/events/root_isolation.hpp"
 #include "impact_damper/motion/flight.hpp"
 #include "impact_damper/motion/joint_contact.hpp"
+#include "impact_damper/motion/motion_in_fluid.hpp"
 #include "impact_damper/motion/shifted_motion.hpp"
+#include "impact_damper/motion/system.hpp"
 #include "impact_damper/orbits/masses_along_run.hpp"
 
 namespace impact_damper {
@@ -22,15 +24,16 @@ class NearestMiss {
   std::optional<double> find() {
     for (std::size_t n = 0; n < run_.chain.motions.size(); ++n) {
       const MotionChain::Motion& motion = run_.chain.motions[n];
-      if (of_.has_components) {
-        if (now_.comes_to_settled_event(n)) {
-          now_.pass_settled_event(n);
+      if (of_.rigid) {
+        if (now_.comes_to_rigid_event(n)) {
+          now_.pass_rigid_event(n);
           note_stops();
         }
-        pass_with_components(motion);
-      } else if (of_.rigid) {
-        if (now_.comes_to_rigid_event(n)) now_.pass_rigid_event(n);
-        pass_masses(motion, now_.joined_mass());
+        if (of_.has_components) {
+          pass_with_components(motion);
+        } else {
+          pass_masses(motion, now_.joined_mass());
+        }
       } else {
         now_.come_to_compliant_events(n);
         now_.pass_compliant_events(n);
@@ -57,44 +60,72 @@ class NearestMiss {
       note(mass.slides_before > 0 ? of_.dampers[i].clearance - mass.y : mass.y);
     }
   }
-  // Follows the masses in flight, which friction or weight act on, and updates the nearest miss by those
-  // without friction.
+  // Follows the masses in flight, on which friction, weight or drag act, and updates the nearest miss by
+  // those without friction.
   void pass_with_components(const MotionChain::Motion& motion) {
     const double joined_mass = now_.joined_mass();
+    fluid_.clear();
+    number_in_fluid_.assign(now_.masses.size(), 0);
+    forces_ = {.weight = of_.weight, .held = joined_mass - 1};
+    double rest = -of_.weight * forces_.held;
+    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
+      const VariationalCoefficients::OfDamper& its = of_.dampers[i];
+      if (now_.masses[i].wall != 0) continue;
+      const double friction = its.friction * now_.masses[i].slides;
+      rest += its.nu * friction;
+      if (its.drag == 0) {
+        forces_.others += its.nu * friction;
+        continue;
+      }
+      fluid_.push_back({its.nu, 0, its.drag, 0, now_.masses[i].w});
+      forces_.friction.push_back(friction);
+      number_in_fluid_[i] = fluid_.size();
+    }
+    if (!fluid_.empty()) {
+      if (!system_) system_.emplace(of_.scene, of_.scene.dampers[0]);
+      in_fluid_.begin(*system_, motion.begin, now_.x, now_.v, fluid_, number_in_fluid_, forces_);
+      return follow(in_fluid_, motion.duration);
+    }
     const Forcing<double> force{of_.force.amplitude / joined_mass, of_.force.frequency};
-    double rest = 0;
-    for (std::size_t i = 0; i < now_.masses.size(); ++i)
-      rest += of_.dampers[i].nu *
-              (now_.masses[i].wall == 0 ? of_.dampers[i].friction * now_.masses[i].slides : -of_.weight);
     std::optional<ForcedOscillator> joined;
     if (joined_mass != 1) joined.emplace(of_.zeta / joined_mass, 1 / joined_mass, of_.force);
-    const ShiftedMotion<double, Forcing<double>> primary(joined ? *joined : free_, force, motion.begin,
-                                                         now_.x, now_.v, rest);
+    ShiftedMotion<double, Forcing<double>> shifted(joined ? *joined : free_, force, motion.begin, now_.x,
+                                                   now_.v, rest);
+    follow(shifted, motion.duration);
+  }
+  // moved_by: a ShiftedMotion, or a MotionInFluid.
+  template <class MovedBy>
+  void follow(MovedBy& moved_by, double duration) {
+    using Now = typename MovedBy::Now;
+    const double span = moved_by.span(search_.span);
     for (std::size_t i = 0; i < now_.masses.size(); ++i) {
       MassesAlongRun::Mass& mass = now_.masses[i];
       if (mass.wall != 0) continue;
-      const double pull = now_.pull(i), span = search_.span;
+      const double pull = number_in_fluid_[i] > 0 ? 0 : now_.pull(i);
       // Let go by its wall it has y'' = 0 there, too; see Flight::turn_of_y().
-      const auto& first = primary.primary().beginning();
-      const double begin =
-          mass.w == 0 ? begin_by_lead<double>(2, first[3], primary.primary().bound(4, span), span) : 0;
+      double begin = 0;
+      if (mass.w == 0) {
+        Now now(moved_by, 0, span);
+        auto&& first = now.of_mass(i);
+        begin = begin_by_lead<double>(2, first[3], first.bound(4), span);
+      }
       const auto gained = [&](double t) {
-        const auto [x, v, dx, dv] = primary.primary().at(t);
+        const auto [x, v, dx, dv] = moved_by.of_mass(i, t, moved_by.displacement(t));
         return PlaceInCavity{mass.w * t - (dx + pull * t * t / 2), -(dv + pull * t)};
       };
       const auto turn = [&](double sign, double from) {
         return isolate_fall<double>(
             [&](double t) {
-              const auto [x, v, dx, dv] = primary.primary().at(t);
-              const auto now = primary.primary().instant<6>(x, v, t);
-              return LocalEnclosure<double>{{sign * (mass.w - (dv + pull * t)), -sign * (now[2] + pull),
-                                             -sign * now[3], now.bound(4, span)}};
+              Now now(moved_by, t, span);
+              auto&& x = now.of_mass(i);
+              const double w = mass.w - (x.displacement().dv + pull * t);
+              return LocalEnclosure<double>{{sign * w, -sign * (x[2] + pull), -sign * x[3], x.bound(4)}};
             },
-            std::max(from, begin), motion.duration, search_, 1.0);
+            std::max(from, begin), duration, search_, 1.0);
       };
       if (of_.dampers[i].friction == 0)
         look_for_misses(i, turn, [&](double time) { return mass.y + gained(time).y; });
-      const PlaceInCavity end = gained(motion.duration);
+      const PlaceInCavity end = gained(duration);
       mass.y += end.y;
       mass.w += end.w;
     }
@@ -186,6 +217,11 @@ class NearestMiss {
   const RecordedRun& run_;
   MassesAlongRun now_;
   ForcedOscillator free_;
+  std::optional<System<double>> system_;  // made when it is first asked for
+  MotionInFluid<double, Forcing<double>> in_fluid_;
+  std::vector<PushedWall<double>> fluid_;  // the masses that slide in a fluid
+  std::vector<std::size_t> number_in_fluid_;
+  ConstantForces<double> forces_;
   std::vector<FlightStart<double>> starts_;
   JointContact<double, Forcing<double>> joint_;
   Search<double> search_{2};

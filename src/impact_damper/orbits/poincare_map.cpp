@@ -78,13 +78,9 @@ std::vector<Problem> problems_of_derivatives(const Scene& scene, const Engine& e
   if (!problems.empty()) return problems;
   for (const auto& [name, number, least, most] : numbers_of(scene)) {
     const double value = number.in(scene);
-    if (!field_of(number).component || value == 0) continue;
-    const bool is_drag = number.is(&SceneDamper::drag);
-    if (!is_drag && std::holds_alternative<Restitution>(engine)) continue;
+    if (!field_of(number).component || value == 0 || std::holds_alternative<Restitution>(engine)) continue;
     problems.push_back({name, "must be 0 where changes of the motion are followed, got " +
-                                  number_text(value) +
-                                  (is_drag ? ": only sweeps and basins have drag"
-                                           : ": only the restitution engine has friction and weight then")});
+                                  number_text(value) + ": only the restitution engine has it then"});
   }
   return problems;
 }

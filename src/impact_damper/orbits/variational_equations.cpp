@@ -42,20 +42,22 @@ int pieces_of(double loss) { return loss < most_pieces ? 1 + int(loss) : most_pi
 // Whether even most_pieces pieces contract by more than exp(-36) each, a rounding error: directions are lost.
 bool is_lost(double loss) { return loss > 36.0 * most_pieces; }
 
-// The propagator of changes while several masses push their compliant walls (M13.27).
+// The propagator of changes while several masses push their compliant walls (M13.27), or slide in a fluid
+// (M13.33).
 class JointPropagator {
  public:
-  // in_contact: indices of these masses. with_force: for changes of the force, too.
-  JointPropagator(const VariationalCoefficients& of, std::span<const std::size_t> in_contact, double duration,
-                  bool with_force)
-      : in_contact_(in_contact) {
+  // in_contact: indices of these masses. mass: of the primary mass and all that sticks to it. with_force: for
+  // changes of the force, too.
+  JointPropagator(const VariationalCoefficients& of, std::span<const std::size_t> in_contact, double mass,
+                  double duration, bool with_force)
+      : in_contact_(in_contact), mass_(mass) {
     const std::size_t n = 2 + 2 * in_contact.size() + (with_force ? 4 : 0);
     double rate = with_force ? of.force.frequency : 0, all_k = 0, most_k = 0;
     for (const std::size_t i : in_contact) {
       const OfDamper& each = of.dampers[i];
       all_k += each.nu * each.stiffness;
       most_k = std::max(most_k, each.stiffness);
-      rate += (1 + each.nu) * each.damping;
+      rate += (1 + each.nu) * (each.damping + each.drag);
     }
     rate += 2 * of.zeta + std::sqrt(1 + all_k + most_k);
     matrix_ =
@@ -100,11 +102,12 @@ class JointPropagator {
     if (s.size() > n) a += s[n];
     for (std::size_t k = 0; k < in_contact_.size(); ++k) {
       const OfDamper& each = of.dampers[in_contact_[k]];
-      const double push = each.damping * s[3 + 2 * k] + each.stiffness * s[2 + 2 * k];
+      const double push = (each.damping + each.drag) * s[3 + 2 * k] + each.stiffness * s[2 + 2 * k];
       a += each.nu * push;
       rates[2 + 2 * k] = s[3 + 2 * k];
       rates[3 + 2 * k] = -push;
     }
+    a /= mass_;
     rates[0] = s[1], rates[1] = a;
     for (std::size_t k = 0; k < in_contact_.size(); ++k) rates[3 + 2 * k] -= a;
     if (s.size() == n) return;
@@ -116,6 +119,7 @@ class JointPropagator {
   }
 
   std::span<const std::size_t> in_contact_;
+  double mass_;
   // Rows and columns of x, x', q and q' of each mass in contact, and (g, h, a, b) of (M13.27).
   Matrix matrix_;
 };
@@ -124,204 +128,78 @@ class JointPropagator {
 void find_rates(const VariationalCoefficients& of, const MassesAlongRun& now, double time,
                 ChangeOfState& all) {
   all.resize(of.dimensions());
-  if (of.has_components) {
-    all[0] = now.v, all[1] = now.acceleration(time);
+  all[0] = now.v;
+  if (of.rigid) {
+    all[1] = now.acceleration(time);
     for (std::size_t i = 0; i < now.masses.size(); ++i) {
       const bool free = now.masses[i].wall == 0;
       all[index_of_y(i)] = free ? now.masses[i].w : 0;
-      all[index_of_w(i)] = free ? -(all[1] + now.pull(i)) : 0;
+      all[index_of_w(i)] = free ? -(all[1] + now.pull(i) + of.dampers[i].drag * now.masses[i].w) : 0;
     }
     return;
   }
   double a = of.force.amplitude * of.force.phase(time).sin - 2 * of.zeta * now.v - now.x;
   for (std::size_t i = 0; i < now.masses.size(); ++i) {
-    const bool free = now.masses[i].wall == 0;
-    all[index_of_y(i)] = free || !of.rigid ? now.masses[i].w : 0;
+    all[index_of_y(i)] = now.masses[i].w;
     all[index_of_w(i)] = 0;
-    if (free || of.rigid) continue;
+    if (now.masses[i].wall == 0) continue;
     const OfDamper& its = of.dampers[i];
     const double push =
         its.damping * now.masses[i].w + its.stiffness * (now.masses[i].y - now.position_of_wall(i));
     a += its.nu * push;
     all[index_of_w(i)] = -push;
   }
-  if (of.rigid) a /= now.joined_mass();
-  all[0] = now.v, all[1] = a;
-  for (std::size_t i = 0; i < now.masses.size(); ++i)
-    if (now.masses[i].wall == 0 || !of.rigid) all[index_of_w(i)] -= a;
+  all[1] = a;
+  for (std::size_t i = 0; i < now.masses.size(); ++i) all[index_of_w(i)] -= a;
 }
 
-// The saltation matrix of an event at rigid walls (M13.4).
+// The saltation matrix of an event at rigid walls (M13.4), with friction, weight or drag (13.11).
 class RigidSaltation {
  public:
-  // Both must outlive this object.
-  RigidSaltation(const VariationalCoefficients& of, const MassesAlongRun& now)
-      : of_(of), now_(now), event_(of.dampers.size()) {}
+  // All must outlive this object. Carried::one_sided and stop_margin are kept up to date.
+  RigidSaltation(const VariationalCoefficients& of, const MassesAlongRun& now, Carried& all)
+      : of_(of), now_(now), all_(all) {}
 
   // Finds the matrix of an event at a time: begin() is called before its jump of the state, find() after it.
   void begin(double time) { find_rates(of_, now_, time, rates_before_); }
-  void find(double time) {
-    find_rates(of_, now_, time, rates_after_);
-    find_shares();
-    for (const MotionChain::Impact& impact : now_.impacts)
-      find_saltation(event_[std::size_t(impact.damper)].saltation, impact.w * double(now_.impacts.size()));
-  }
-  // Multiplies a change by it.
-  void apply(ChangeOfState& s) {
-    const Taken taken = taken_by(s);
-    double x = s[0], v = s[1];
-    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
-      const MassesAlongRun::Mass& mass = now_.masses[i];
-      const EventOfMass& its = event_[i];
-      const double y = s[index_of_y(i)], w = s[index_of_w(i)];
-      if (mass.meets || mass.joins) x += (its.share + (mass.meets ? its.saltation[0] : 0)) * y;
-      if (mass.meets) v += its.saltation[1] * y;
-      v += its.of_w * w;
-    }
-    shifted_.assign(s.size(), 0.0);  // by the delay of the impacts of other masses, and in y' of its own
-    for (std::size_t k = 0; k < now_.masses.size(); ++k) {
-      if (!now_.masses[k].meets) continue;
-      for (std::size_t i = 2; i < s.size(); ++i)
-        if (i != index_of_y(k)) shifted_[i] += event_[k].saltation[i] * s[index_of_y(k)];
-    }
-    s[0] = x;
-    s[1] = v;
-    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
-      double &y = s[index_of_y(i)], &w = s[index_of_w(i)];
-      if (now_.masses[i].wall != 0) {
-        y = w = 0;
-        continue;
-      }
-      const double own = now_.masses[i].meets ? 1 + event_[i].saltation[index_of_y(i)] : 1;
-      y = own * y - taken.y + shifted_[index_of_y(i)];
-      w = velocity_after(i, w, taken) + shifted_[index_of_w(i)];
-    }
-  }
-
- private:
-  // What the event does to one mass.
-  struct EventOfMass {
-    double gain, share, of_w;  // x' gains gain y' by its impulse, share y' by its joining, of_w y' in all
-    std::vector<double> saltation = {};  // meets: (F^+ - D F^-)/(n F^-) of (M13.4)
-  };
-
-  // Finds the coefficients of (M13.23) and (M13.24), which is (M13.7) for one mass.
-  void find_shares() {
-    const double joined_mass = now_.joined_mass();
-    double passive = 0;  // the shares of masses that join without an impulse
-    for (std::size_t i = 0; i < event_.size(); ++i) {
-      const MassesAlongRun::Mass& mass = now_.masses[i];
-      const OfDamper& its = of_.dampers[i];
-      event_[i].gain = mass.is_active ? its.nu * (1 + its.e) / now_.active_mass : 0;
-      event_[i].share = mass.joins ? its.nu / joined_mass : 0;
-      if (!mass.is_active) passive += event_[i].share;
-    }
-    for (std::size_t i = 0; i < event_.size(); ++i) {
-      EventOfMass& event = event_[i];
-      event.of_w = now_.masses[i].is_active ? event.gain * (1 - passive) + event.share * -of_.dampers[i].e
-                                            : event.share;
-    }
-  }
-  // What (M13.23) and (M13.24) take from y and y' of a mass that flies on, except for its own impact.
-  struct Taken {
-    double y = 0, gained = 0, joined = 0;
-  };
-  Taken taken_by(const ChangeOfState& s) const {
-    Taken all;
-    for (std::size_t i = 0; i < now_.masses.size(); ++i) all.gained += event_[i].gain * s[index_of_w(i)];
-    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
-      if (!now_.masses[i].joins) continue;
-      const double w = s[index_of_w(i)], share = event_[i].share;
-      all.y += share * s[index_of_y(i)];
-      all.joined += share * (now_.masses[i].is_active ? -of_.dampers[i].e * w : w - all.gained);
-    }
-    return all;
-  }
-  // y' of a mass that flies on after the jump.
-  double velocity_after(std::size_t i, double w, const Taken& taken) const {
-    return (now_.masses[i].is_active ? -of_.dampers[i].e * w : w - taken.gained) - taken.joined;
-  }
-  // Sets `all` to (F^+ - D F^-)/w.
-  void find_saltation(std::vector<double>& all, double w) const {
-    const ChangeOfState& before = rates_before_;
-    const Taken taken = taken_by(before);
-    all = rates_after_;
-    all[0] -= before[0];
-    all[1] -= before[1];
-    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
-      all[0] -= event_[i].share * before[index_of_y(i)];
-      all[1] -= event_[i].of_w * before[index_of_w(i)];
-      if (now_.masses[i].wall != 0) continue;
-      all[index_of_y(i)] -= before[index_of_y(i)] - taken.y;
-      all[index_of_w(i)] -= velocity_after(i, before[index_of_w(i)], taken);
-    }
-    for (double& each : all) each /= w;
-  }
-
-  const VariationalCoefficients& of_;
-  const MassesAlongRun& now_;
-  std::vector<EventOfMass> event_;
-  ChangeOfState rates_before_, rates_after_;  // F^- and F^+
-  ChangeOfState shifted_;
-};
-
-// The saltation matrix of an event of a run with friction or weight (13.11).
-class SettledSaltation {
- public:
-  // Both must outlive this object.
-  SettledSaltation(const VariationalCoefficients& of, const MassesAlongRun& now) : of_(of), now_(now) {}
-
-  // Finds the matrix of an event at a time: begin() is called before its jump of the state, find() after it.
-  void begin(double time) {
-    find_rates(of_, now_, time, rates_before_);
-    mass_before_ = now_.joined_mass();
-  }
-  // No condition sets the time at which a run begins.
   void find(double time, bool run_begins) {
     find_rates(of_, now_, time, rates_after_);
     find_shares();
-    conditions_.clear();
-    one_sided = false;
-    stop_margin.reset();
-    if (run_begins) {
-      // A mass at rest that begins to slide: after a change of y' against that direction it would stop first.
-      for (const MassesAlongRun::Mass& mass : now_.masses)
-        one_sided = one_sided || (mass.slides != 0 && mass.w == 0);
-      return;
-    }
     find_conditions(time);
+    // A mass at rest that begins to slide as the run begins: after a change of y' against that direction it
+    // would stop first.
+    if (run_begins)
+      for (const MassesAlongRun::Mass& mass : now_.masses)
+        all_.one_sided = all_.one_sided || (mass.slides != 0 && mass.w == 0);
     if (conditions_.empty()) return;
-    one_sided =
-        (conditions_.size() > 1 && !all_stay_) || (last_time_ && time - *last_time_ <= 1e-14 * (1 + time));
+    const bool at_one_instant = of_.has_components && last_time_ && time - *last_time_ <= 1e-14 * (1 + time);
+    if (at_one_instant || (conditions_.size() > 1 && !all_stay_)) all_.one_sided = true;
     last_time_ = time;
     shift_ = rates_before_;
     jump(shift_);
     for (std::size_t i = 0; i < shift_.size(); ++i) shift_[i] = rates_after_[i] - shift_[i];
   }
-  // Multiplies a change by it. by_force: the derivative of f at that time by what is changed.
-  void apply(ChangeOfState& s, double by_force) const {
+  // Multiplies a change by it. by_force(): the derivative of f at that time by what is changed.
+  template <class ByForce>
+  void apply(ChangeOfState& s, ByForce&& by_force) const {
     double earlier = 0;  // by how much the event comes earlier after this change
     for (const Condition& each : conditions_)
-      earlier += each.change(s, by_force) / double(conditions_.size());
+      earlier += (each.index > 0 ? s[each.index] : by_force() + change_in_band(s)) / each.rate;
     jump(s);
     if (conditions_.empty()) return;
+    earlier /= double(conditions_.size());
     for (std::size_t i = 0; i < s.size(); ++i) s[i] += shift_[i] * earlier;
   }
 
-  bool one_sided = false;             // of the last event
-  std::optional<double> stop_margin;  // Carried::stop_margin, of the last event
-
  private:
   // What sets the time of an event: a number of the state that comes to zero, at a rate; or (1 + sigma) x''
-  // that comes to the edge of a band, where `index` is 0.
+  // that comes to the edge of a band, where `index` is 0. No condition sets the time at which a run begins.
   struct Condition {
     std::size_t index;
-    double rate, damping = 0;
-    double change(const ChangeOfState& s, double by_force) const {
-      return (index > 0 ? s[index] : by_force - damping * s[1] - s[0]) / rate;
-    }
+    double rate;
   };
 
+  // Finds the coefficients of (M13.23) and (M13.24), which is (M13.7) for one mass.
   void find_shares() {
     const double joined_mass = now_.joined_mass();
     gain_.assign(now_.masses.size(), 0.0);
@@ -333,6 +211,7 @@ class SettledSaltation {
     }
   }
   void find_conditions(double time) {
+    conditions_.clear();
     all_stay_ = false;
     for (const MotionChain::Impact& impact : now_.impacts)
       conditions_.push_back({index_of_y(std::size_t(impact.damper)), impact.w});
@@ -341,32 +220,44 @@ class SettledSaltation {
     all_stay_ = true;
     for (std::size_t i = 0; i < now_.masses.size(); ++i) {
       const MassesAlongRun::Mass& mass = now_.masses[i];
-      const bool stops = mass.slides_before != 0 && (mass.wall != 0 || mass.slides == -mass.slides_before);
-      if (!stops) continue;
+      // One that joins its wall at another's stop has chattered there, and no speed of its own sets a time.
+      const bool turns = mass.slides_before != 0 && mass.slides == -mass.slides_before;
+      const bool holds = mass.slides_before != 0 && mass.wall != 0 && !mass.joins_place;
+      if (!turns && !holds) continue;
       all_stay_ = all_stay_ && mass.wall != 0;
       const OfDamper& its = of_.dampers[i];
       const double rate = rates_before_[index_of_w(i)];
       conditions_.push_back({index_of_w(i), rate});
       double margin = std::fabs(rate);
       if (its.holding > its.friction) {
-        const double held = rates_before_[1] + its.nu / (mass_before_ + its.nu) * rate;  // x'', if it is held
+        const double own = rates_after_[index_of_w(i)];  // 0 if it is held
+        const double held = rates_after_[1] + its.nu / (now_.joined_mass() + its.nu) * own;  // x'', if it is
         margin = std::min(margin, std::fabs(std::fabs(held + of_.weight) - its.holding));
       }
-      if (!(stop_margin && *stop_margin <= margin)) stop_margin = margin;
+      note_margin(margin);
     }
     if (!conditions_.empty()) return;
     // Releases (M13.31), at which the rates jump only where phi_s > phi (M13.32). Whoever is let go at one
     // instant, it is the same condition.
-    const double damping = 2 * of_.zeta;
-    const double rate = of_.force.amplitude * of_.force.frequency * of_.force.phase(time).cos -
-                        damping * rates_before_[1] - rates_before_[0];
     for (std::size_t i = 0; i < now_.masses.size(); ++i) {
       const MassesAlongRun::Mass& mass = now_.masses[i];
       const OfDamper& its = of_.dampers[i];
       if (mass.wall_before == 0 || mass.wall != 0 || !(its.holding > its.friction)) continue;
-      conditions_.push_back({0, rate, damping});
+      const double by_force = of_.force.amplitude * of_.force.frequency * of_.force.phase(time).cos;
+      conditions_.push_back({0, by_force + change_in_band(rates_before_)});
+      note_margin(std::fabs(conditions_.back().rate));
       break;
     }
+  }
+  void note_margin(double margin) {
+    if (!(all_.stop_margin && *all_.stop_margin <= margin)) all_.stop_margin = margin;
+  }
+  // The change of (1 + sigma) x'' without that of the force.
+  double change_in_band(const ChangeOfState& s) const {
+    double change = -2 * of_.zeta * s[1] - s[0];
+    for (std::size_t i = 0; i < of_.dampers.size(); ++i)
+      change += of_.dampers[i].nu * of_.dampers[i].drag * s[index_of_w(i)];
+    return change;
   }
   // Multiplies a change by the derivative D of the jump, (M13.23) and (M13.24).
   void jump(ChangeOfState& s) const {
@@ -392,10 +283,10 @@ class SettledSaltation {
 
   const VariationalCoefficients& of_;
   const MassesAlongRun& now_;
+  Carried& all_;
   std::vector<double> gain_, share_;  // nu (1+e) of those with an impulse, nu of those that join; over masses
   std::vector<Condition> conditions_;
   bool all_stay_ = false;  // the event is stops of masses that are held from then on, in whatever order
-  double mass_before_ = 1;
   std::optional<double> last_time_;
   ChangeOfState rates_before_, rates_after_, shift_;  // F^-, F^+ and F^+ - D F^-
 };
@@ -411,30 +302,31 @@ class VariationalEquations {
         changes_(changes),
         after_step_(after_step),
         now_(of, run),
-        saltation_(of, now_),
-        settled_(of, now_),
+        saltation_(of, now_, all_),
         dimensions_lost_(of.dampers.size()) {}
 
   Carried carry() {
     for (std::size_t n = 0; n < run_.chain.motions.size(); ++n) {
-      if (of_.has_components) {
-        pass_settled_event(n);
-      } else if (of_.rigid) {
+      if (of_.rigid) {
         pass_rigid_event(n);
       } else {
         pass_compliant_events(n);
       }
       const MotionChain::Motion& motion = run_.chain.motions[n];
-      if (of_.rigid && !of_.has_components) all_.lost = std::max(all_.lost, 2 * now_.in_contact.size());
-      if (of_.rigid || now_.in_contact.empty()) {
+      find_coupled();
+      if (coupled_.empty()) {
         pass_flight(motion);
-      } else if (now_.in_contact.size() > 1) {
-        pass_joint_contact(motion);
+      } else if (of_.rigid || coupled_.size() > 1) {
+        pass_coupled(motion);
       } else if (const UnforcedModes& modes = *of_.dampers[now_.in_contact.front()].modes; modes.coupled) {
         pass_contact<ContactWithoutModes<double, Unforced>>(modes, motion);
       } else {
         pass_contact<Contact<double, Unforced>>(modes, motion);
       }
+      if (of_.rigid)
+        for (std::size_t i = 0; i < now_.masses.size(); ++i)
+          if (now_.masses[i].wall == 0)
+            now_.masses[i].w += now_.v - motion.v - now_.pull(i) * motion.duration;
       now_.pass(motion);
     }
     if (along_) {
@@ -457,6 +349,13 @@ class VariationalEquations {
     }
   }
 
+  // The derivative (g, h, a, b) of the force at a time (M13.27) by what a change is by; 0 for the state's.
+  std::array<double, 4> change_of_force(const ChangeOfState& s, double time) const {
+    if (along_ && &s == &along_->by_frequency) return JointPropagator::secular(of_.force, time);
+    if (along_ && &s == &along_->by_amplitude) return JointPropagator::harmonic(of_.force, time);
+    return {};
+  }
+
   // Applies the event between the motion n and the one before, if there is one: to the changes its saltation
   // matrix (M13.4), to the state its jump.
   void pass_rigid_event(std::size_t n) {
@@ -464,26 +363,9 @@ class VariationalEquations {
     const double time = run_.chain.motions[n].begin;
     saltation_.begin(time);
     now_.pass_rigid_event(n);
-    saltation_.find(time);
-    all_.one_sided = all_.one_sided || now_.impacts.size() > 1;
-    carry_all(1, [&](ChangeOfState& s, int) { saltation_.apply(s); });
-  }
-  // The same with friction or weight.
-  void pass_settled_event(std::size_t n) {
-    if (!now_.comes_to_settled_event(n)) return;
-    const double time = run_.chain.motions[n].begin;
-    settled_.begin(time);
-    now_.pass_settled_event(n);
-    settled_.find(time, n == 0);
-    all_.one_sided = all_.one_sided || settled_.one_sided;
-    if (settled_.stop_margin && !(all_.stop_margin && *all_.stop_margin <= *settled_.stop_margin))
-      all_.stop_margin = settled_.stop_margin;
-    carry_all(1, [&](ChangeOfState& s, int) {
-      double by_force = 0;
-      if (along_ && &s == &along_->by_frequency) by_force = JointPropagator::secular(of_.force, time)[0];
-      if (along_ && &s == &along_->by_amplitude) by_force = JointPropagator::harmonic(of_.force, time)[0];
-      settled_.apply(s, by_force);
-    });
+    saltation_.find(time, n == 0);
+    carry_all(
+        1, [&](ChangeOfState& s, int) { saltation_.apply(s, [&] { return change_of_force(s, time)[0]; }); });
     // A mass that friction stops loses the change of y', one that stays on its wall that of y, too.
     std::size_t lost = 0;
     for (std::size_t i = 0; i < now_.masses.size(); ++i) {
@@ -516,7 +398,7 @@ class VariationalEquations {
   // In how many pieces a motion is taken. rate_of_loss: minus the divergence, the rate at which volumes
   // contract. A propagator by squaring (M13.27) loses digits where it contracts them much.
   int pieces_for(double rate_of_loss, double duration) {
-    if (!after_step_ && now_.in_contact.size() < 2) return 1;
+    if (!after_step_ && coupled_.size() < 2) return 1;
     const double loss = rate_of_loss * duration;
     if (is_lost(loss)) all_.lost = std::max(all_.lost, 2 * std::max<std::size_t>(1, now_.in_contact.size()));
     return pieces_of(loss);
@@ -549,12 +431,6 @@ class VariationalEquations {
             const Propagator<double> impulse = oscillator.propagate(tau);
             return std::array<double, 4>{impulse.s / mass, impulse.v / mass, 0, 0};
           });
-    if (of_.rigid)
-      for (MassesAlongRun::Mass& each : now_.masses)
-        if (each.wall == 0) each.w += now_.v - motion.v;
-    if (of_.has_components)
-      for (std::size_t i = 0; i < now_.masses.size(); ++i)
-        if (now_.masses[i].wall == 0) now_.masses[i].w -= now_.pull(i) * motion.duration;
   }
   // Carries changes through a motion in which one mass pushes a compliant wall. The columns of the propagator
   // are contacts without a force, each from a unit state.
@@ -587,27 +463,32 @@ class VariationalEquations {
           });
     }
   }
-  // The same where several do.
-  void pass_joint_contact(const MotionChain::Motion& motion) {
-    double rate_of_loss = 2 * of_.zeta;
-    for (const std::size_t i : now_.in_contact)
-      rate_of_loss += (1 + of_.dampers[i].nu) * of_.dampers[i].damping;
+  // Sets coupled_ to the masses that push compliant walls or slide in a fluid.
+  void find_coupled() {
+    coupled_.clear();
+    for (std::size_t i = 0; i < now_.masses.size(); ++i)
+      if (of_.rigid ? is_in_fluid(i) : now_.masses[i].wall != 0) coupled_.push_back(i);
+  }
+  bool is_in_fluid(std::size_t i) const { return now_.masses[i].wall == 0 && of_.dampers[i].drag != 0; }
+  // Carries changes through a motion in which several masses push compliant walls, or some slide in a fluid.
+  void pass_coupled(const MotionChain::Motion& motion) {
+    const double mass = of_.rigid ? now_.joined_mass() : 1;
+    double rate_of_loss = 2 * of_.zeta / mass;
+    for (const std::size_t i : coupled_)
+      rate_of_loss += (1 + of_.dampers[i].nu / mass) * (of_.dampers[i].damping + of_.dampers[i].drag);
     const int pieces = pieces_for(rate_of_loss, motion.duration);
     const double duration = motion.duration / pieces;
-    const JointPropagator propagator(of_, now_.in_contact, duration, along_ != nullptr);
+    const JointPropagator propagator(of_, coupled_, mass, duration, along_ != nullptr);
     carry_all(pieces, [&](ChangeOfState& s, int piece) {
-      const double x = s[0], v = s[1], time = motion.begin + duration * piece;
-      std::array<double, 4> force{};
-      if (along_ && &s == &along_->by_frequency) force = JointPropagator::secular(of_.force, time);
-      if (along_ && &s == &along_->by_amplitude) force = JointPropagator::harmonic(of_.force, time);
-      propagator.carry(s, force);
+      const double x = s[0], v = s[1];
+      propagator.carry(s, change_of_force(s, motion.begin + duration * piece));
       carry_free(s, duration, x, v);
     });
   }
   // Carries a change of y and y' of all masses that fly, x and v being those of x and x' before.
   void carry_free(ChangeOfState& s, double duration, double x, double v) const {
     for (std::size_t i = 0; i < now_.masses.size(); ++i) {
-      if (now_.masses[i].wall != 0) continue;
+      if (now_.masses[i].wall != 0 || is_in_fluid(i)) continue;
       s[index_of_y(i)] += duration * s[index_of_w(i)] - (s[0] - x - duration * v);
       s[index_of_w(i)] -= s[1] - v;
     }
@@ -661,10 +542,10 @@ class VariationalEquations {
   const std::function<void()>& after_step_;
   // y is not followed, nor y' with compliant walls, where no matrix depends on them.
   MassesAlongRun now_;
-  RigidSaltation saltation_;
-  SettledSaltation settled_;
-  std::vector<std::size_t> dimensions_lost_;  // by each mass while it is held, with friction or weight
+  std::vector<std::size_t> coupled_;
   Carried all_;
+  RigidSaltation saltation_;
+  std::vector<std::size_t> dimensions_lost_;  // by each mass while it sticks or is held
 };
 
 }  // namespace

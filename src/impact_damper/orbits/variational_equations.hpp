@@ -39,8 +39,7 @@ struct Carried {
   // Whether several masses met rigid walls at one instant. The derivative is then that of changes that keep
   // them together.
   bool one_sided = false;
-  // With friction: how near a mass that stops comes to where there is no derivative, the least over all stops
-  // of |y''| just before and, where phi_s > phi, of the distance of |x'' + gamma| from phi_s just after.
+  // As in PoincareImage.
   std::optional<double> stop_margin;
 };
 // The derivatives of the final state by omega_f and by f0, for a fixed end time, and its rates.

@@ -14,11 +14,11 @@ namespace impact_damper {
 struct LyapunovExponents {
   StopReason stop_reason = StopReason::time;  // any other: why a period could not be completed
   std::int64_t periods = 0;                   // of the force, over which the exponents are averaged
-  // Per unit of time; their sum is the mean of ln|det A|, (M13.9) and (M13.26). In the order in which the
-  // orthogonalisation finds them: descending, if there are enough periods. One for each component of the
-  // state: four, with a list two and two for each damper. Two fewer for each mass that sticks at the time at
-  // which most masses do, or that a sustained contact damps by more than exp(-36) 4096 times: these are minus
-  // infinity, or too low to be determined. None unless all periods were completed.
+  // Per unit of time; their sum is the mean of ln|det A|, (M13.9), (M13.26) and (M13.34). In the order in
+  // which the orthogonalisation finds them: descending, if there are enough periods. One for each component
+  // of the state: four, with a list two and two for each damper. Two fewer for each mass that sticks at the
+  // time at which most masses do, or that a sustained contact damps by more than exp(-36) 4096 times: these
+  // are minus infinity, or too low to be determined. None unless all periods were completed.
   std::vector<double> exponents;
   // Standard error of each: the standard deviation of the means of ten blocks of periods, divided by the
   // square root of ten. It assumes that the motion forgets its state within one block. None for less than ten

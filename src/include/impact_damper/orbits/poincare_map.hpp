@@ -68,8 +68,9 @@ struct PoincareImage {
   // (compliant walls), and to a coincidence of impacts. Each is absent where the motion has no such event.
   std::optional<double> slowest_impact;  // least speed; complete chattering counts with its first impact
   std::optional<double> nearest_miss;    // least distance from a wall at which a mass turns back in flight
-  // With friction: how near a mass that stops comes to where there is no derivative by s. The least of |y''|
-  // just before a stop and, where phi_s > phi, of the distance of |x'' + gamma| from phi_s just after.
+  // With friction: how near a mass that stops or is let go comes to where there is no derivative by s. The
+  // least of |y''| just before a stop and, where phi_s > phi, of the distance of |x'' + gamma| from phi_s
+  // just after, and of |(1 + sigma) x'''| at a release (M13.31).
   std::optional<double> stop_margin;
   // Rigid walls, several dampers: the least time between two successive impacts of different dampers; the
   // first follows the last, as on an orbit. Where they change their order the map jumps.
@@ -87,7 +88,7 @@ inline constexpr std::size_t most_dampers_with_changes = 100;
 Scene scene_of_map(Scene scene, int half_periods);
 
 // Why the derivatives of runs of a scene are not known: it or the engine is not valid for steady motions
-// (steady_state.hpp), or it has friction, weight or drag, and the engine is not restitution or it has drag.
+// (steady_state.hpp), or it has friction, weight or drag, and the engine is not restitution.
 std::vector<Problem> problems_of_derivatives(const Scene& scene, const Engine& engine);
 
 // The map H^n of a scene, n = half_periods, and its derivatives.
