@@ -210,6 +210,11 @@ TEST_CASE("cem knows from the first step to which side a force moves a mass at r
   scene.damper().y0 = 1, scene.damper().w0 = 0.5079995904720795,
   scene.force_amplitude = -0.023887365656086762;
   agrees(scene, Cem{.locate = true});
+  // Beside a fluid.
+  scene.until_time = 3;
+  scene.damper() = {.mass_ratio = 2, .wall_stiffness = 6666, .y0 = 1, .drag = 0.25};
+  scene.force_amplitude = 0.05, scene.force_frequency = 10;
+  agrees(scene, Cem{.locate = true});
 }
 
 TEST_CASE("extreme mass ratios are rejected, or give finite numbers") {
