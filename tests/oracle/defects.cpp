@@ -295,6 +295,17 @@ TEST_CASE("lists in which the restitution engine was wrong once") {
   list_agrees(scene, {damper(2, 1, 2, 2, 0), damper(1, 0.25, 2, 0, 1)});
 }
 
+TEST_CASE("friction on a mass that turns while others bounce has the direction that it has then") {
+  Scene scene{.x0 = -2, .force_amplitude = 1, .force_frequency = 2, .weight = 1, .until_time = 4.62};
+  scene.dampers = {damper(0.5, 1, 0.5, 0.25, 0), damper(1, 0.5, 0.5, 0, 0), damper(2, 0.5, 0.5, 0.5, 0),
+                   damper(1, 0.25, 0.5, 0, 0)};
+  const double friction[] = {0, 1, 2 / 3., 1}, holds[] = {0, 1, 4 / 3., 2}, drag[] = {0.25, 0.25, 0, 0};
+  for (std::size_t i = 0; i < 4; ++i)
+    scene.dampers[i].friction = friction[i], scene.dampers[i].static_friction = holds[i],
+    scene.dampers[i].drag = drag[i];
+  agrees(scene, Restitution{});
+}
+
 TEST_CASE("lists in which the exact engine was wrong once") {
   const auto list_agrees = [](double x0, const std::vector<SceneDamper>& dampers, double end = 1) {
     Scene scene{.x0 = x0, .until_time = end, .dampers = dampers};
