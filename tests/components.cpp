@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <numbers>
 #include <random>
 #include <vector>
@@ -19,7 +18,6 @@
 #include "same_run.hpp"
 
 using namespace impact_damper;
-using reference::order;
 
 namespace {
 
@@ -137,45 +135,6 @@ TEST_CASE("components: static friction holds a mass longer than friction stops i
   // y'' = 0.8 sin t - 0.1
   check_y(scene, time,
           5 + 0.8 * (std::sin(slides) - std::sin(time)) + 0.8 * std::cos(slides) * 0.4 - 0.05 * 0.16);
-}
-
-TEST_CASE("components: much friction locks the masses together, free and forced") {
-  Scene scene{.damping_ratio = 0.03, .x0 = 2, .dampers = {{.mass_ratio = 0.3, .y0 = 0.4, .friction = 100}}};
-  const auto locked = [&](double t) {  // (1 + nu) x'' + 2 zeta x' + x = 0
-    const std::complex<double> s(-0.03 / 1.3, std::sqrt(1 / 1.3 - std::pow(0.03 / 1.3, 2)));
-    return 2 * std::real(std::exp(s * t) * std::complex<double>(1, s.real() / s.imag()));
-  };
-  std::array<double, 2> error{};
-  for (int i = 0; i < 2; ++i)
-    error[i] = std::abs(state_at(scene, 5, {.time_step = 0.01 / (1 << i), .unstable = true}).x - locked(5));
-  CHECK(error[0] < 1e-3);
-  CHECK(order(error[0], error[1]) == doctest::Approx(2).epsilon(0.1));
-
-  scene.damping_ratio = 0.1;
-  scene.force_amplitude = 0.5;
-  scene.force_frequency = 1.2;
-  scene.until_time = 200;
-  const Run run = simulate(scene, Cem{.time_step = 1e-3, .unstable = true}, {});
-  const std::complex<double> compliance(1 - 1.3 * 1.44, 2 * 0.1 * 1.2);
-  CHECK(run.half_cycles->amplitude.back() == doctest::Approx(0.5 / std::abs(compliance)).epsilon(1e-5));
-}
-
-TEST_CASE("components: under its weight a mass on a base at rest is the bouncing ball") {
-  Scene scene = on_heavy_base({.restitution = 0.7, .y0 = 0.5});
-  scene.damper().wall_stiffness = 100;  // a contact lasts 1e-5
-  scene.weight = 0.4;
-  scene.until_time = 9;
-  const Run run = simulate(scene, Cem{.locate = true}, {.impacts = true, .energy = true});
-  double time = std::sqrt(2 * 0.5 / 0.4), speed = std::sqrt(2 * 0.5 * 0.4);
-  REQUIRE(run.impacts->time.size() >= 5);
-  for (int i = 0; i < 5; ++i) {
-    CAPTURE(i);
-    CHECK(run.impacts->wall[i] == Wall::left);
-    CHECK(run.impacts->time[i] == doctest::Approx(time).epsilon(2e-4));
-    CHECK(-run.impacts->relative_velocity[i] == doctest::Approx(speed).epsilon(2e-4));
-    speed *= 0.7;
-    time += 2 * speed / 0.4;
-  }
 }
 
 TEST_CASE("components: drag slows a mass on a base at rest exponentially") {

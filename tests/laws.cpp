@@ -259,30 +259,6 @@ TEST_CASE("laws: the damper of a wall may lag") {
   CHECK(order(error[0], error[1]) == doctest::Approx(1).epsilon(0.1));
 }
 
-TEST_CASE("laws: a table, a power of 1 and a spring that are linear are the linear ones to rounding") {
-  Scene scene{.damping_ratio = 0.01, .x0 = 2, .force_amplitude = 0.1, .until_time = 4};
-  scene.damper() = {.mass_ratio = 0.05, .restitution = 1, .wall_stiffness = 2000, .y0 = 0.3};
-  const Record record = reference::everything({{0, 4, 50}});
-  for (const Cem& options : {Cem{}, Cem{.damper = Damper::lagged}, Cem{.locate = true}}) {
-    const Run expected = simulate(scene, options, record);
-    REQUIRE(expected.impacts->time.size() > 2);
-    Cem same = options;
-    same.time_step = std::get<Cem>(expected.engine).time_step;
-    for (int n = 0; n < 4; ++n) {
-      CAPTURE(n);
-      Scene with_law = scene;
-      if (n == 0) with_law.damper().wall = {.law = WallForm::power, .exponent = 1};
-      if (n == 1)
-        with_law.damper().wall = {.law = WallForm::table, .pairs = {{0, 0}, {0.001, 2}, {0.5, 1000}}};
-      if (n == 2) with_law.spring = {.law = SpringForm::table, .pairs = {{0, 0}, {0.7, 0.7}, {5, 5}}};
-      if (n == 3) with_law.spring = {.law = SpringForm::table, .pairs = {{-5, -5}, {0, 0}, {5, 5}}};
-      Run run = simulate(with_law, same, record);
-      run.scene = scene;
-      reference::same(run, expected, 1e-9);
-    }
-  }
-}
-
 TEST_CASE("laws: the energy balance closes with the square of the step") {
   int falling = 0;
   constexpr int scenes = 20;

@@ -329,7 +329,10 @@ class Walker {
         const bool alike =
             off <= (nested ? std::max(w * Quad(1e-3L), Quad(1e-14L)) : w / 2 + below_.speed(p.time));
         const bool other_is_nearer = !nested && next_is_nearer(mine, i, q);
-        const Quad near = nested ? Quad(1e-6L) * (1 + p.time) : window(p.time);
+        // Of those that need not be listed others may be left out.
+        const Quad near = !nested                               ? window(p.time)
+                          : omitted(mine, i) && omitted(its, j) ? Quad(sticking_begin) * (1 + p.time)
+                                                                : Quad(1e-6L) * (1 + p.time);
         if (magnitude(p.time - q.time) <= near && alike && !other_is_nearer) {
           both_.rough.push_back(setting_.nested && omitted(mine, i) && omitted(its, j));
           both_.impacts.push_back({my_numbers[i++], its_numbers[j++]});
@@ -491,6 +494,14 @@ class Units {
     if (kind == w_) unit += rounding_ * size(w_, t);
     return unit;
   }
+  // Of the loss of an impact on a rigid wall beside others, by (M17.4): the impulse is nu times a difference
+  // of speeds as large as that of the impact, however little of it is left between two masses of which one is
+  // much heavier.
+  Quad of_impulse(int damper, Quad speed) const {
+    const Scene& scene = setting_.scene();
+    if (setting_.question.walls != Walls::rigid) return 0;
+    return rounding_ * scene.dampers[std::size_t(damper)].mass_ratio * speed * speed;
+  }
   // A place that is off by so much is met at this speed.
   Quad met(Quad t, Quad place, Quad speed) const {
     return predicted(time_, t) + (speed != 0 ? place / magnitude(speed) : Quad(0));
@@ -543,6 +554,17 @@ bool same_peak(const HalfCycle& p, const HalfCycle& q) {  // two peaks of one he
 void numbers_of_events(const Answer& a, const Answer& b, const Walk& both, const Setting& setting,
                        const Take& take) {
   const auto beyond = [&](Quad t) { return both.mismatch && t >= *both.mismatch; };
+  // What bounces on beside those whose chattering has been replaced by its limit is where it would be except
+  // for epsilon |x| / 8 (17.3). That is all of it, not one of `operations`.
+  const auto left_off = [&](const Impact& impact) {
+    const Quad t = impact.time;
+    const bool beside =
+        setting.nested && std::any_of(a.contacts.begin(), a.contacts.end(), [&](const Contact& each) {
+          return each.damper != impact.damper && each.wall == impact.wall && t <= each.end &&
+                 each.begin - t <= Quad(sticking_begin) * (1 + t);
+        });
+    return beside ? Quad(0x1p-52 / 8 / operations) * magnitude(impact.displacement) : Quad(0);
+  };
   for (std::size_t n = 0; n < both.impacts.size(); ++n) {
     const auto [i, j] = both.impacts[n];
     const Impact &p = a.impacts[i], &q = b.impacts[j];
@@ -553,16 +575,18 @@ void numbers_of_events(const Answer& a, const Answer& b, const Walk& both, const
             [=](const Units&) { return Quad(sticking_begin / operations) * (1 + t); }});
       continue;
     }
-    const auto met = [=](const Units& units) { return units.met(t, units.place(), w); };
+    const Quad off = left_off(p),
+               speed_off = off != 0 && w != 0 ? off * p.acceleration / magnitude(w) : Quad(0);
+    const auto met = [=](const Units& units) { return units.met(t, units.place() + off, w); };
+    const auto speed = [=](const Units& units) { return units.predicted(w_, t) + speed_off; };
     take({"impact time" + row_index(j), time_, t, t, q.time, met});
-    take({"relative velocity" + row_index(j), w_, t, w, q.relative_velocity,
-          [=](const Units& units) { return units.predicted(w_, t); }});
+    take({"relative velocity" + row_index(j), w_, t, w, q.relative_velocity, speed});
     // It goes on while the time errs.
     take({"displacement" + row_index(j), x_, t, p.displacement, q.displacement,
           [=](const Units& units) { return units.predicted(x_, t) + units.size(v_, t) * met(units); }});
     take({"impact loss" + row_index(j), loss_, t, p.loss, q.loss, [=, loss = p.loss](const Units& units) {
             const Quad by_speed = w != 0 ? loss / magnitude(w) : Quad(0);
-            return units.growth(loss_, t) + 2 * by_speed * units.predicted(w_, t);
+            return units.growth(loss_, t) + 2 * by_speed * speed(units) + units.of_impulse(p.damper, w);
           }});
   }
   const auto speed_at = [&](const Held& contact) {
@@ -570,12 +594,12 @@ void numbers_of_events(const Answer& a, const Answer& b, const Walk& both, const
       if (each.damper == contact.damper && each.time == contact.begin) return each.relative_velocity;
     return Quad(0);
   };
-  // The speed of another damper's impact that throws one off its rigid wall.
+  // The impact of another damper that throws one off its rigid wall: its speed, and left_off().
   const auto thrown_off = [&](const Held& contact) {
     for (const Impact& each : a.impacts)
       if (setting.nested && each.damper != contact.damper && each.time == contact.end)
-        return each.relative_velocity;
-    return Quad(0);
+        return std::array{each.relative_velocity, left_off(each)};
+    return std::array{Quad(0), Quad(0)};
   };
   // Where the engine jumps to the end of a chattering it is off by up to its tolerance of what it jumps over.
   const auto jump = [&](const Held& contact) {
@@ -604,8 +628,8 @@ void numbers_of_events(const Answer& a, const Answer& b, const Walk& both, const
     if (beyond(end)) continue;
     take({"contact end" + which, time_, end, end, q.end,
           [=, speed = p.end_speed, struck = thrown_off(p)](const Units& units) {
-            return struck != 0 ? units.met(end, units.place(), struck)
-                               : units.met(end, units.release(end), speed);
+            return struck[0] != 0 ? units.met(end, units.place() + struck[1], struck[0])
+                                  : units.met(end, units.release(end), speed);
           }});
   }
   for (std::size_t n = 0; n < std::min(both.my_rows.size(), both.its_rows.size()); ++n) {
@@ -633,6 +657,8 @@ Prediction predict(const Setting& setting) {
   // touched, one of both decides otherwise.
   std::vector<Noise> noises{{1e-24, 1}, {-1e-24, 1}, {probe, 3}};
   if (setting.dampers() == 1) noises.push_back({1e-24, 2});
+  // What rounding decides central differences decide in one way or the other, with any step.
+  if (by_steps) noises.push_back({closed_forms.noise, 3}), noises.push_back({-closed_forms.noise, 3});
   Prediction result;
   Question question = setting.question;
   const Scene& scene = setting.scene();
@@ -649,6 +675,17 @@ Prediction predict(const Setting& setting) {
   for (const Contact& each : plain.contacts)
     if (by_steps && each.end - each.begin < first_step(scene) / finer_steps.back() / 4 && each.end < end)
       result.end_at(each.begin, "a contact shorter than a step");
+  // Chattering that ends where friction would hold the mass as well: whether it then lies on its wall or
+  // stands above it, by less than rounding, depends on who else is in the air as it turns.
+  for (std::size_t i = 0; setting.nested && i < plain.contacts.size(); ++i) {
+    const Contact& each = plain.contacts[i];
+    const Quad near = Quad(sticking_begin) * (1 + each.begin);
+    for (std::size_t n = 0; n < i && each.by_friction; ++n) {
+      const Contact& before = plain.contacts[n];
+      if (before.damper == each.damper && before.wall == each.wall && each.begin - before.end <= near)
+        result.end_at(before.begin, "rounding decides: held on a wall or above it");
+    }
+  }
   // Impacts on left and right walls that follow each other within rounding of their times: whether a mass
   // rests on its wall when the next one comes, or is a hair from it, is then no property of the scene in
   // double precision.
@@ -907,6 +944,12 @@ void judge_samples(const Run& run, const Prediction& prediction, const Units& un
   }
 }
 
+// (gamma sum of nu)^2: twice the energy by which weight draws the masses down.
+Quad square_of_pull(const Scene& scene) {
+  Quad mass = 0;
+  for (const SceneDamper& each : scene.dampers) mass += each.mass_ratio;
+  return mass * mass * scene.weight * scene.weight;
+}
 // Each term of the energy balance may be off by roundings of the largest.
 void judge_energy(const Run& run, const Prediction& prediction, const Walk& both, const Setting& setting,
                   const Judge& judge) {
@@ -923,7 +966,13 @@ void judge_energy(const Run& run, const Prediction& prediction, const Walk& both
       unit += rounding * answer.turnover * run.scene.force_frequency * *run.scene.until_time;
     judge.number(mine[i].name, double(its[i].value), mine[i].value, unit);
   }
-  judge.number("residual", balance.residual, 0, rounding * 10);
+  // Divided by the energy that is available (18.5), which where weight draws the masses down is the rest of
+  // larger terms.
+  const Quad available = answer.initial.total() + square_of_pull(setting.scene()) / 2 + answer.turnover;
+  const Quad largest = std::max(answer.initial.spring, answer.final.spring) +
+                       std::max(magnitude(answer.initial.weight), magnitude(answer.final.weight));
+  judge.number("residual", balance.residual, 0,
+               rounding * (10 + (largest > available ? largest / available : Quad(0))));
   if (setting.question.walls != Walls::rigid || both.mismatch || setting.nested) return;
   Quad jumped = answer.sum(&DamperEnergy::chatter_loss), grown = floor;
   for (const std::size_t i : both.skipped) jumped += answer.impacts[i].loss;

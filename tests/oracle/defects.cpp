@@ -210,6 +210,11 @@ TEST_CASE("cem knows from the first step to which side a force moves a mass at r
   scene.damper().y0 = 1, scene.damper().w0 = 0.5079995904720795,
   scene.force_amplitude = -0.023887365656086762;
   agrees(scene, Cem{.locate = true});
+  // Beside a fluid.
+  scene.until_time = 3;
+  scene.damper() = {.mass_ratio = 2, .wall_stiffness = 6666, .y0 = 1, .drag = 0.25};
+  scene.force_amplitude = 0.05, scene.force_frequency = 10;
+  agrees(scene, Cem{.locate = true});
 }
 
 TEST_CASE("extreme mass ratios are rejected, or give finite numbers") {
@@ -288,6 +293,17 @@ TEST_CASE("lists in which the restitution engine was wrong once") {
   // The return to the wall that a mass has left from rest, while another one flies.
   scene.x0 = -0.5, scene.v0 = 1;
   list_agrees(scene, {damper(2, 1, 2, 2, 0), damper(1, 0.25, 2, 0, 1)});
+}
+
+TEST_CASE("friction on a mass that turns while others bounce has the direction that it has then") {
+  Scene scene{.x0 = -2, .force_amplitude = 1, .force_frequency = 2, .weight = 1, .until_time = 4.62};
+  scene.dampers = {damper(0.5, 1, 0.5, 0.25, 0), damper(1, 0.5, 0.5, 0, 0), damper(2, 0.5, 0.5, 0.5, 0),
+                   damper(1, 0.25, 0.5, 0, 0)};
+  const double friction[] = {0, 1, 2 / 3., 1}, holds[] = {0, 1, 4 / 3., 2}, drag[] = {0.25, 0.25, 0, 0};
+  for (std::size_t i = 0; i < 4; ++i)
+    scene.dampers[i].friction = friction[i], scene.dampers[i].static_friction = holds[i],
+    scene.dampers[i].drag = drag[i];
+  agrees(scene, Restitution{});
 }
 
 TEST_CASE("lists in which the exact engine was wrong once") {

@@ -208,6 +208,8 @@ class Integrator {
       if (!each.stuck) sum += each.side * each.nu * each.resistance(each.s, each.d, each.direction());
     return sum - weight_ * (joined_mass() - 1);
   }
+  // x'' + gamma, by which what moves with the primary mass presses walls.
+  Quad acceleration() const { return force() / joined_mass() + weight_; }
   // A speed or a force that is rounding of what else moves.
   Quad rounded() const {
     Quad sum = magnitude(v_) + magnitude(x_) + magnitude(f0_) + weight_;
@@ -386,7 +388,8 @@ class Integrator {
   int number_of(const Damper& each) const { return int(&each - dampers_.data()); }
   void open_contact(Damper& each) {
     each.contact = answer_.contacts.size();
-    answer_.contacts.push_back({t_ + each.rest, t_, number_of(each), each.wall()});
+    const bool by_friction = at_rigid_wall(each) && magnitude(acceleration()) <= each.static_friction;
+    answer_.contacts.push_back({t_ + each.rest, t_, number_of(each), each.wall(), by_friction});
     each.rest = 0;
     (compliant_ ? each.in_contact : each.stuck) = true;
     slow_ = false;
@@ -435,14 +438,14 @@ class Integrator {
   // Of those that are to stay at rest the one that does it least; none if all do. Whether the rest do depends
   // on it, as it no longer is joined to the primary mass.
   Damper* first_to_slide() {
-    const Quad acceleration = force() / joined_mass() + weight_, nearly = Quad(1e14L) * rounded();
+    const Quad second = acceleration(), nearly = Quad(1e14L) * rounded();
     Damper* first = nullptr;
     Quad most = nearly;
     bool undecided = false;
     for (Damper& each : dampers_) {
       if (!each.stuck) continue;
       const Quad wall = each.in_contact ? each.stiffness * each.d : Quad(0);
-      const Quad pull = -(each.side * acceleration + wall);
+      const Quad pull = -(each.side * second + wall);
       const Quad beyond = (at_rigid_wall(each) ? pull : magnitude(pull)) - each.static_friction;
       if (beyond > most) first = &each, most = beyond, each.slides = sign_of(pull);
       undecided = undecided || beyond >= -nearly;
@@ -458,6 +461,17 @@ class Integrator {
       }
     return nullptr;
   }
+  // One that has been let go from rest, in a direction in which nothing any longer moves it against its
+  // friction, since another one has been let go after it: it is held again.
+  Damper* first_to_hold() {
+    const Quad second = acceleration(), nearly = Quad(1e14L) * rounded();
+    for (Damper& each : dampers_) {
+      if (each.stuck || each.s != 0 || each.slides == 0 || each.static_friction == 0) continue;
+      const Quad wall = each.in_contact ? each.stiffness * each.d : Quad(0);
+      if (each.slides * -(each.side * second + wall) < each.friction - nearly) return &each;
+    }
+    return nullptr;
+  }
   // Those at rest: do they stay so, on a rigid wall or held by friction?
   void decide() {
     for (Damper& each : dampers_)  // a speed that is rounding of what goes on: what follows decides
@@ -465,7 +479,14 @@ class Integrator {
     for (Damper& each : dampers_)
       each.stuck = each.s == 0 && !std::exchange(each.lets_go, false) &&
                    (each.static_friction > 0 || at_rigid_wall(each));
-    while (Damper* const first = first_to_slide()) first->stuck = false;
+    for (std::size_t changes = 0; changes < 16 * dampers_.size(); ++changes) {
+      if (Damper* const slides = first_to_slide())
+        slides->stuck = false;
+      else if (Damper* const holds = first_to_hold())
+        holds->stuck = true;
+      else
+        break;
+    }
     const auto is_free = [](const Damper& each) { return each.rests() && !each.in_contact && !each.stuck; };
     if (compliant_) {
       if (std::none_of(dampers_.begin(), dampers_.end(), is_free)) return;
@@ -497,11 +518,10 @@ class Integrator {
     decide();
     if (compliant_) drop_fast_modes();
     Quad h = step_by_rate / rate();
-    const Quad acceleration = force() / joined_mass();
+    const Quad second = acceleration();
     for (const Damper& each : dampers_) {  // what will soon be at a wall needs no long step
       if (each.stuck || each.in_contact) continue;
-      const double push = double(each.side * (acceleration + weight_) +
-                                 each.resistance(each.s, each.d, each.direction())),
+      const double push = double(each.side * second + each.resistance(each.s, each.d, each.direction())),
                    speed = double(each.s);
       const double way = double(push > 0 ? each.d : each.clearance - each.d),
                    towards = push > 0 ? -speed : speed;
@@ -680,7 +700,7 @@ class Integrator {
         mass += each->nu;
         driven += each->side * each->nu * (1 + e_of(*each)) * each->s;
       }
-    const Quad jump = driven / mass;
+    const Quad jump = driven / mass, second = magnitude(acceleration());
     v_ += jump;
     // What is not at a wall sees the jump, too: its velocity relative to the cavity. No friction holds it.
     for (Damper& each : dampers_)
@@ -694,8 +714,15 @@ class Integrator {
       if (before < 0) {
         const Quad loss = each->nu * impulse_by_mass * (1 - e) * -before / 2;
         each->chattering.push_back(answer_.impacts.size());
-        answer_.impacts.push_back(
-            {t_, number_of(*each), each->wall(), each->side * before, x_, loss, {}, active});
+        answer_.impacts.push_back({t_,
+                                   number_of(*each),
+                                   each->wall(),
+                                   each->side * before,
+                                   x_,
+                                   loss,
+                                   {},
+                                   active,
+                                   second + each->friction});
       }
     }
     for (Damper* each : all)

@@ -78,13 +78,16 @@ struct Impact {
   Quad displacement;                      // x
   Quad loss;                              // compliant walls: in the contact that it begins
   std::optional<Quad> accumulation = {};  // rigid walls: when the chattering that it belongs to is complete
-  bool impulse = true;  // false: another damper's impulse of this instant has moved the wall away
+  bool impulse = true;    // false: another damper's impulse of this instant has moved the wall away
+  Quad acceleration = 0;  // rigid walls: |x'' + gamma| + phi before, of what lies on walls together
 };
 
 struct Contact {  // as in impact_damper::Contacts
   Quad begin, end;
   int damper;
   impact_damper::Wall wall;
+  // On a rigid wall; friction would hold the mass just above it as well.
+  bool by_friction = false;
   Quad end_speed = 0;  // at its end |y'| or, released from a rigid wall, (1 + nu) |x'''|
 };
 

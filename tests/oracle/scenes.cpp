@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "impact_damper/base/number_text.hpp"
+#include "polynomial.hpp"
 #include "reference.hpp"
 
 namespace oracle {
@@ -343,6 +344,49 @@ Scene aimed_compliant_list(std::uint64_t seed) {
   return scene;
 }
 
+namespace {
+
+// Scenes in which an event of friction or weight coincides with another one, or with the release.
+Scene at_an_edge(Scene scene, Random& random) {
+  Quad mass = 1;
+  for (SceneDamper& each : scene.dampers) {
+    // At rest, in the cavity or exactly at a wall.
+    each.y0 = each.clearance * one_of(random, {0, 0.25, 0.5, 1});
+    each.w0 = each.static_friction = 0;
+    mass += each.mass_ratio;
+  }
+  const int which = int(random.bits() % 4);
+  if (which == 0) {
+    // Friction, or static friction, that is |x'' + gamma| at the release of all of them held, to the last
+    // bit.
+    const double edge =
+        std::fabs(double((scene.weight - scene.x0 - 2 * scene.damping_ratio * Quad(scene.v0)) / mass));
+    const double part = one_of(random, {0.5, 1});
+    for (SceneDamper& each : scene.dampers) each.friction = part * edge, each.static_friction = edge;
+  } else if (which == 1) {
+    // Held together, they part at one instant.
+    const double friction = one_of(random, {0.25, 0.5}), ratio = one_of(random, {0, 1, 2});
+    for (SceneDamper& each : scene.dampers) each.friction = friction, each.static_friction = ratio * friction;
+  } else if (which == 2) {
+    // On their floors x'' = -gamma at the release, gamma being 1.
+    scene.weight = scene.x0 = 1, scene.v0 = 0;
+    for (SceneDamper& each : scene.dampers) each.y0 = 0;
+  } else {
+    // nu phi holds x against its spring while the mass slides, and the friction stops that exactly at a wall.
+    scene.dampers.resize(1);
+    SceneDamper& its = scene.damper();
+    const double side = one_of(random, {-1, 1}), speed = one_of(random, {0.25, 0.5}) * its.clearance;
+    its.friction = one_of(random, {0.5, 1}) * its.clearance, its.drag = 0;
+    scene.weight = one_of(random, {0, 0.25}) * its.clearance;
+    scene.x0 = side * its.mass_ratio * its.friction, scene.v0 = scene.force_amplitude = 0;
+    const double way = speed * speed / (2 * (its.friction + side * scene.weight));
+    its.w0 = side * speed, its.y0 = side > 0 ? its.clearance - way : way;
+  }
+  return scene;
+}
+
+}  // namespace
+
 Scene with_components(Scene scene, std::uint64_t seed, bool round) {
   Random random(seed ^ (std::uint64_t(1) << 41));
   const auto part = [&](double least, double most) {
@@ -363,7 +407,8 @@ Scene with_components(Scene scene, std::uint64_t seed, bool round) {
     const double ratio = round ? one_of(random, {1, 1.5, 2}) : random.uniform(1, 2);
     each.static_friction = or_none(ratio * each.friction);
   }
-  return scene;
+  // Drawn last, so that a seed's other numbers do not depend on it.
+  return round && random.chance(0.3) ? at_an_edge(scene, random) : scene;
 }
 
 std::string options_of(const Scene& scene) {

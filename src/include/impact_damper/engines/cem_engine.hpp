@@ -125,7 +125,7 @@ class CemEngine {
     // A force moves a primary mass at rest in the middle by x''' h^3/6, which the second-order start leaves
     // out, too. It is added, unless an impact moves the mass.
     const bool moved_by_force =
-        s.x == 0 && s.v == 0 && second == 0 && !impact_at_once && !masses_.has_components();
+        s.x == 0 && s.v == 0 && (masses_.has_components() ? second_of_x : second) == 0 && !impact_at_once;
     if (moved_by_force) steps_.lead_x_by(masses_.force.amplitude * masses_.force.frequency);
 
     half_cycles_.take_side(sign(s.x != 0 ? s.x : s.v));

@@ -577,6 +577,17 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
       const Real time = lower_bound_of_meeting(i);
       if (time < others_meet) others_meet = time;
     }
+    // Whether friction keeps its direction on all others, or holds them, as long as the masses bounce, which
+    // changes velocities by `change` at most: else it is not that of the limit.
+    const auto friction_stays = [&](const Real& change, const Real& lasts) {
+      for (std::size_t i = 0; i < masses_.size(); ++i) {
+        if (joins_[i] || on_wall(i) || !(holds_[i] > 0)) continue;
+        if (masses_.held[i] ? absolute(all.a) > holds_[i]
+                            : absolute(masses_.u1[i]) <= change + friction_[i] * lasts)
+          return false;
+      }
+      return true;
+    };
     for (std::size_t count = chattering_.size(); count > 0; --count) {
       const Sums& sums = sums_[count];
       const Real heavy = all.mass * all.mass;
@@ -588,7 +599,8 @@ class RestitutionWithComponents : EngineWithRigidWalls<Real, Force, Observer> {
           (m3 + m4 * lasts + damping * (all.a + weight_ + sums.forces) / mass_) * lasts + sums.by_drag;
       if (8 * sums.moves <= epsilon * (absolute(x_) + speed * lasts) && lasts < span &&
           (alone || lasts <= tolerance_) && changes <= tolerance_ * sums.margin && changes <= sums.holding &&
-          (speed > turns || 2 * lasts <= epsilon * tracker_.now()) && 2 * lasts <= others_meet) {
+          ((speed > turns && friction_stays(turns, lasts)) || 2 * lasts <= epsilon * tracker_.now()) &&
+          2 * lasts <= others_meet) {
         join(count, all, Real(sums.momentum / (mass_ + sums.mass)));
         return true;
       }
