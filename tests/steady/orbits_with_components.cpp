@@ -330,18 +330,23 @@ TEST_CASE("masses that stop together and are held, and are let go together, have
 TEST_CASE("an impact that passes phase 0 is crossed to first order, with friction, weight and drag") {
   Scene scene = sliding(0, 0.06, 0.1);
   scene.damper().drag = 0.7;
-  const double x = 0.3, v = 0.2, w = -0.9, d = 0.7, phi = 0.1, gamma = 0.06, nu = 0.1;
-  const double a = -2 * 0.05 * v - x + nu * (d * w - phi), w1 = -(a + d * w - phi + gamma);
+  scene.dampers.push_back(scene.damper());
+  scene.dampers[1].drag = 1.5;  // another: the impact of a mass and its own drag do not care who is first
+  const double x = 0.3, v = 0.2, w = -0.9, d = 0.7, phi = 0.1, gamma = 0.06, nu = 0.1, other = 0.4;
+  const double in_1 = d * w - phi, in_2 = 1.5 * other + phi, a = -2 * 0.05 * v - x + nu * (in_1 + in_2);
   double before = 0;
   for (const double time : {2e-3, 1e-3}) {
     // Beyond the wall, as if there were none.
-    const StateVector beyond{x + v * time, v + a * time, w * time, w + w1 * time};
-    const auto crossed = corrector::across_phase_0(scene, Restitution{}, {x, v, 0, w}, beyond);
+    const StateVector at{x, v, 0, w, 0.5, other};
+    const StateVector rates{v, a, w, -(a + in_1 + gamma), other, -(a + in_2 + gamma)};
+    StateVector beyond = at;
+    for (std::size_t i = 0; i < beyond.size(); ++i) beyond[i] += rates[i] * time;
+    const auto crossed = corrector::across_phase_0(scene, Restitution{}, at, beyond);
     REQUIRE(crossed);
-    const RecordedRun run = ForcedScene(scene, Restitution{}).record(state_of({x, v, 0, w}), time);
+    const RecordedRun run = ForcedScene(scene, Restitution{}).record(state_of(at), time);
     const StateVector expected = vector_of(run.end);
     double error = 0;
-    for (std::size_t i = 0; i < 4; ++i) error = std::max(error, std::fabs(crossed->state[i] - expected[i]));
+    for (std::size_t i = 0; i < 6; ++i) error = std::max(error, std::fabs(crossed->state[i] - expected[i]));
     if (before > 0) CHECK(before / error == doctest::Approx(4).epsilon(0.02));
     before = error;
   }
