@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "impact_damper/base/number_text.hpp"
-#include "polynomial.hpp"
 #include "reference.hpp"
 
 namespace oracle {
@@ -348,19 +347,20 @@ namespace {
 
 // Scenes in which an event of friction or weight coincides with another one, or with the release.
 Scene at_an_edge(Scene scene, Random& random) {
-  Quad mass = 1;
   for (SceneDamper& each : scene.dampers) {
     // At rest, in the cavity or exactly at a wall.
     each.y0 = each.clearance * one_of(random, {0, 0.25, 0.5, 1});
     each.w0 = each.static_friction = 0;
-    mass += each.mass_ratio;
   }
   const int which = int(random.bits() % 4);
   if (which == 0) {
     // Friction, or static friction, that is |x'' + gamma| at the release of all of them held, to the last
-    // bit.
-    const double edge =
-        std::fabs(double((scene.weight - scene.x0 - 2 * scene.damping_ratio * Quad(scene.v0)) / mass));
+    // bit: they are as heavy together as the primary mass.
+    const std::size_t count = scene.dampers.size();
+    for (SceneDamper& each : scene.dampers) each.mass_ratio = count == 3 ? 0.25 : 1 / double(count);
+    if (count == 3) scene.dampers[0].mass_ratio = 0.5;
+    scene.v0 = 0;
+    const double edge = std::fabs(scene.weight - scene.x0) / 2;
     const double part = one_of(random, {0.5, 1});
     for (SceneDamper& each : scene.dampers) each.friction = part * edge, each.static_friction = edge;
   } else if (which == 1) {
