@@ -440,6 +440,10 @@ class ExactWithComponents : EngineOfDampers<Real, Force, Observer> {
       }
       if (!enters && masses_.held[i]) leave(i);
     }
+    if constexpr (requires { observer_.settled(std::int32_t{}, PlaceInCavity{}, false, 0.0); })
+      for (std::size_t i = 0; i < masses_.size(); ++i)
+        observer_.settled(masses_.number[i], masses_.place(i, masses_.u[i], masses_.u1[i]), each_[i].still,
+                          double(each_[i].slides));
   }
   void sum_up_held() {
     forces_.held = 0;
