@@ -481,13 +481,14 @@ TEST_CASE("an impact with several dampers may cost 20 ns more for each further o
 
 TEST_CASE("what a component costs is held against its bound") {
   Findings found;
-  found.components = {{"exact", "friction", 1.5, {1.3, 1.4, 1.6}}, {"exact", "drag", 3, {3, 3.2, 3.3}}};
+  found.components = {{"exact", "friction", 1.5, {1.3, 1.4, 1.6}, {2.6, 2.8, 3.2}},
+                      {"exact", "drag", 3, {3, 3.2, 3.3}, {3, 3.2, 3.3}}};
   const std::vector<Result> results = results_of(found);
-  const Result& friction = find(results, "exact: time per impact with friction");
+  const Result& friction = find(results, "exact: time per event with friction");
   CHECK(*friction.measured == 1.4);
-  CHECK(friction.note == "quartiles 1.3 to 1.6");
+  CHECK(friction.note == "quartiles 1.3 to 1.6; per impact 2.8");
   CHECK(friction.within());
-  CHECK(!find(results, "exact: time per impact with drag").within());
+  CHECK(!find(results, "exact: time per event with drag").within());
 }
 
 TEST_CASE("the best of two peers is what an engine is held against") {

@@ -5,12 +5,15 @@
 #include <cstdlib>
 #include <limits>
 #include <new>
+#include <span>
 #include <stdexcept>
 
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/engines/exact.hpp"
+#include "impact_damper/engines/exact_components.hpp"
 #include "impact_damper/engines/recorder.hpp"
 #include "impact_damper/engines/restitution.hpp"
+#include "impact_damper/engines/restitution_components.hpp"
 #include "impact_damper/simulate.hpp"
 #include "measurements.hpp"
 
@@ -147,26 +150,67 @@ void add_sweeps(double most_impacts, const std::function<void(const std::string&
   all.push_back(restitution);
 }
 
+// Counts the events of a run with one damper: the beginnings and ends of contacts, and where there are
+// components also stops and releases, after each of which an engine decides anew who is held.
+class EventCounter {
+ public:
+  bool wants_half_cycles() const { return false; }
+  bool wants_contacts() const { return true; }
+  bool wants_energy() const { return false; }
+  void half_cycle(double, double, double, double) {}
+  void impact(double, Wall, double, double, std::int32_t = 0) { ++impacts_; }
+  void contact(double, double, Wall, std::int32_t = 0) { ++contacts_; }
+  double next_sample() const { return std::numeric_limits<double>::infinity(); }
+  void sample(double, double, double, double, double) {}
+  void sample(double, double, double, std::span<const PlaceInCavity>) {}
+  EnergyBalance& energy_balance() { return energy_balance_; }
+  void settled(std::int32_t, PlaceInCavity, bool, double) { ++settled_; }
+
+  std::int64_t impacts() const { return impacts_; }
+  // Of the calls of settled() the first is that of the release.
+  std::int64_t events() const { return settled_ > 0 ? settled_ - 1 : impacts_ + contacts_; }
+
+ private:
+  std::int64_t impacts_ = 0, contacts_ = 0, settled_ = 0;
+  EnergyBalance energy_balance_;
+};
+
 struct Component {
   std::string name;
   double bound;
   Scene scene;
 };
 
-ComponentCost measure_component(const Component& component, const Engine& engine, int repeats) {
-  const auto seconds_per_impact = [&](const Scene& scene) {
-    std::size_t impacts = 0;
-    const double seconds = cpu_seconds([&] {
-      for (int i = 0; i < 20; ++i)
-        impacts += simulate(scene, engine, {.half_cycles = false, .impacts = true}).impacts->time.size();
-    });
-    return seconds / double(impacts);
-  };
+template <class Options>
+EventCounter count_events(const Scene& scene, const Options& options) {
+  EventCounter counter;
+  const Checked run = checked(scene, options);
+  if (!has_components(scene))
+    run_by<Options>(run, counter);
+  else if constexpr (std::same_as<Options, Exact>)
+    run_exact_with_components<double>(run, counter);
+  else
+    run_restitution_with_components<double>(run, counter);
+  return counter;
+}
+
+template <class Options>
+ComponentCost measure_component(const Component& component, const Options& options, int repeats) {
   const Scene plain{.x0 = 6, .until_amplitude = 0.5};
-  std::vector<double> ratios;
-  for (int i = 0; i < repeats; ++i)
-    ratios.push_back(seconds_per_impact(component.scene) / seconds_per_impact(plain));
-  return {std::string(name_of(engine)), component.name, component.bound, spread_of(ratios)};
+  const EventCounter with = count_events(component.scene, options), without = count_events(plain, options);
+  const auto seconds = [&](const Scene& scene) {
+    return cpu_seconds([&] {
+      for (int i = 0; i < 20; ++i) simulate(scene, options, {.half_cycles = false, .impacts = true});
+    });
+  };
+  std::vector<double> per_event, per_impact;
+  for (int i = 0; i < repeats; ++i) {
+    const double ratio = seconds(component.scene) / seconds(plain);
+    per_event.push_back(ratio * double(without.events()) / double(with.events()));
+    per_impact.push_back(ratio * double(without.impacts()) / double(with.impacts()));
+  }
+  return {std::string(Options::name), component.name, component.bound, spread_of(per_event),
+          spread_of(per_impact)};
 }
 
 }  // namespace

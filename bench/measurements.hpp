@@ -22,12 +22,13 @@ struct Allocations {
 // replacement would not be in force.
 std::vector<Allocations> count_allocations();
 
-// How much longer a decay from 6 to 0.5 takes for an impact with so little of a component that it hardly
-// changes what happens.
+// How much longer a decay from 6 to 0.5 takes with so little of a component that it hardly changes what
+// happens: for an event, which is the beginning or end of a contact, a stop or a release of the secondary
+// mass, and for an impact. Friction adds events: the mass stops after each impact.
 struct ComponentCost {
   std::string engine, component;
-  double bound = 0;
-  Spread ratio;  // of repeats taken in turn
+  double bound = 0;              // of the ratio for an event
+  Spread per_event, per_impact;  // of repeats taken in turn
 };
 std::vector<ComponentCost> measure_components(int repeats);
 

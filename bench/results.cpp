@@ -314,9 +314,11 @@ std::vector<Result> results_of(const Findings& found) {
                                          digits(100 * many.analysis.median, "%.1f") + " %"});
   }
   for (const ComponentCost& cost : found.components) {
-    add(at_most(cost.engine + ": time per impact with " + cost.component + " by that without", cost.bound,
+    add(at_most(cost.engine + ": time per event with " + cost.component + " by that without", cost.bound,
                 "x"),
-        {cost.ratio.median, "quartiles " + digits(cost.ratio.lower) + " to " + digits(cost.ratio.upper)});
+        {cost.per_event.median, "quartiles " + digits(cost.per_event.lower) + " to " +
+                                    digits(cost.per_event.upper) + "; per impact " +
+                                    digits(cost.per_impact.median)});
   }
   for (const FunctionCost& function : found.functions) {
     add(at_most(function.name + ", " + function.arguments + ": time by the C library's", 1.5, "x"),

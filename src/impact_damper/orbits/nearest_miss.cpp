@@ -6,7 +6,7 @@
 #include "impact_damper/events/root_isolation.hpp"
 #include "impact_damper/motion/flight.hpp"
 #include "impact_damper/motion/joint_contact.hpp"
-#include "impact_damper/motion/motion_in_fluid.hpp"
+#include "impact_damper/motion/motion_by_series.hpp"
 #include "impact_damper/motion/shifted_motion.hpp"
 #include "impact_damper/motion/system.hpp"
 #include "impact_damper/orbits/masses_along_run.hpp"
@@ -83,7 +83,7 @@ class NearestMiss {
     }
     if (!fluid_.empty()) {
       if (!system_) system_.emplace(of_.scene, of_.scene.dampers[0]);
-      in_fluid_.begin(*system_, motion.begin, now_.x, now_.v, fluid_, number_in_fluid_, forces_);
+      in_fluid_.begin(*system_, motion.begin, now_.x, now_.v, fluid_, forces_);
       return follow(in_fluid_, motion.duration);
     }
     const Forcing<double> force{of_.force.amplitude / joined_mass, of_.force.frequency};
@@ -93,7 +93,7 @@ class NearestMiss {
                                                    now_.v, rest);
     follow(shifted, motion.duration);
   }
-  // moved_by: a ShiftedMotion, or a MotionInFluid.
+  // moved_by: a ShiftedMotion, or a MotionBySeries.
   template <class MovedBy>
   void follow(MovedBy& moved_by, double duration) {
     using Now = typename MovedBy::Now;
@@ -106,18 +106,18 @@ class NearestMiss {
       double begin = 0;
       if (mass.w == 0) {
         Now now(moved_by, 0, span);
-        auto&& first = now.of_mass(i);
+        auto&& first = now.of_mass(number_in_fluid_[i]);
         begin = begin_by_lead<double>(2, first[3], first.bound(4), span);
       }
       const auto gained = [&](double t) {
-        const auto [x, v, dx, dv] = moved_by.of_mass(i, t, moved_by.displacement(t));
+        const auto [x, v, dx, dv] = moved_by.of_mass(number_in_fluid_[i], t, moved_by.displacement(t));
         return PlaceInCavity{mass.w * t - (dx + pull * t * t / 2), -(dv + pull * t)};
       };
       const auto turn = [&](double sign, double from) {
         return isolate_fall<double>(
             [&](double t) {
               Now now(moved_by, t, span);
-              auto&& x = now.of_mass(i);
+              auto&& x = now.of_mass(number_in_fluid_[i]);
               const double w = mass.w - (x.displacement().dv + pull * t);
               return LocalEnclosure<double>{{sign * w, -sign * (x[2] + pull), -sign * x[3], x.bound(4)}};
             },
@@ -218,7 +218,7 @@ class NearestMiss {
   MassesAlongRun now_;
   ForcedOscillator free_;
   std::optional<System<double>> system_;  // made when it is first asked for
-  MotionInFluid<double, Forcing<double>> in_fluid_;
+  MotionBySeries<double, Forcing<double>> in_fluid_;
   std::vector<PushedWall<double>> fluid_;  // the masses that slide in a fluid
   std::vector<std::size_t> number_in_fluid_;
   ConstantForces<double> forces_;

@@ -24,8 +24,8 @@ class Contact : public ContactMotion<Real, Force>, public ProofsByBounds<Contact
 
  public:
   using Motion::bound_of_x, Motion::by_changes, Motion::depth, Motion::derivative_of_q,
-      Motion::derivative_of_x, Motion::fast_at, Motion::leads_of_x, Motion::parts, Motion::resolution,
-      Motion::slow_at, Motion::sum_at;
+      Motion::derivative_of_x, Motion::fast_at, Motion::high_bound_of_q, Motion::leads_of_x, Motion::parts,
+      Motion::resolution, Motion::slow_at, Motion::sum_at;
 
   Contact(const ContactModes<Real, Force>& system, const Real& begin, const State<Real>& start, Wall wall)
       : Contact(system, begin, system.forcing.phase(begin), start, wall, Real(wall == Wall::left ? 0 : 1)) {}

@@ -120,6 +120,18 @@ class ContactMotion {
     return slow.bound(order, t) + fast.bound(order, t);
   }
 
+  // The same of q for an order up to 5.
+  Real high_bound_of_q(std::size_t order, const Real& t) const {
+    const auto bound = [&](const ContactState<Real>& now, const Oscillator<Real>& oscillator,
+                           const ContactState<Real>& drive) {
+      return Instant<Real, 7, Force>(oscillator, now.q, now.w, on_f(oscillator, drive.q, drive.w), drive.q,
+                                     system_.forcing, phase_)
+          .bound(order, t);
+    };
+    return bound(slow_at(Real(0)), system_.slow, system_.drive_slow) +
+           bound(fast_at(Real(0)), system_.fast, system_.drive_fast);
+  }
+
   // The modal split of the start, made at the first call: the short-contact map does not need it.
   const ContactParts<Real>& parts() const {
     if (!parts_) {

@@ -84,6 +84,7 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force, components>
     }
     for (std::vector<Real>* each : {&force_, &end_q_, &end_w_, &fourth_}) each->resize(walls.size());
     q_.resize(joint_terms * walls.size());
+    if constexpr (components) return;  // no look_until()
     const Real end = length_ * over_h_;
     Real power = over_h_ * over_h_ * over_h_ * over_h_;
     for (std::size_t n = 4; n < joint_terms; ++n) {
@@ -130,8 +131,7 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force, components>
 
   const Real& length() const { return length_; }
   Real rate() const { return Real(joint_radians) / length_; }
-  Displacement<Real> change(const Real& t) const { return change(x_, t); }
-  Displacement<Real> change(const Function& g, const Real& t) const { return change(g.terms, t); }
+  Displacement<Real> change(const Real& t) const { return now(x_, t).displacement; }
   State<Real> at(const Real& t) const {
     const Displacement<Real> now = change(t);
     return {now.x, now.v, Real(0), Real(0)};
@@ -208,34 +208,42 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force, components>
     set(speed.terms, 0, sign * w);
     return speed;
   }
-  // Of a mass of the series, sign times the `order`-th derivative of q; of the primary mass, of x.
-  Function of_mass(std::size_t i, const Real& sign, std::size_t order) const {
-    return function(terms_of(i), sign, order);
+  // The series of x, and of -q of the i-th mass; what a series is at t, with its second derivative, and
+  // others of its derivatives by t there; a bound on its `order`-th derivative in the piece. Orders are at
+  // most 6.
+  const Terms& of_x() const { return x_; }
+  Terms of_minus_q(std::size_t i) const {
+    Terms q = terms_of(i);
+    for (auto& each : q) each = SimdPair<Real>{-each[0], -each[1]};
+    return q;
   }
-  Real second_of_q(std::size_t i) const { return 2 * q_[2 * nu_.size() + i] * over_h_ * over_h_; }
-  Function of_x(const Real& sign, std::size_t order) const { return function(x_, sign, order); }
-  // Adds to a function one whose n-th derivative is constant, n < 3.
-  void add(Function& g, std::size_t n, const Real& derivative) const {
-    Real term = derivative;
-    for (std::size_t k = 1; k <= n; ++k) term *= h_ / Real(double(k));
-    set(g.terms, n, get(g.terms, n) + term);
+  struct Now {
+    Displacement<Real> displacement{};
+    Real second{0};
+  };
+  Now now(const Terms& terms, const Real& t) const {
+    const SeriesAt<Real> by = Departure<Real, joint_terms / 2>{terms}.at(t * over_h_);
+    const Real v0 = over_h_ * get(terms, 1), dv = over_h_ * by.u1;
+    return {{get(terms, 0) + (v0 * t + by.u), v0 + dv, by.u, dv}, over_h_ * over_h_ * by.u2};
   }
-  // The `order`-th derivative of a function at the beginning, and a bound on it in the whole piece.
-  Real begins(const Function& g, std::size_t order) const {
-    Real value = get(g.terms, order);
-    for (std::size_t k = 1; k <= order; ++k) value *= over_h_ * Real(double(k));
-    return value;
+  Real derivative(const Terms& terms, std::size_t order, const Real& t) const {
+    const Real s = t * over_h_;
+    Real all{0};
+    for (std::size_t n = joint_terms; n-- > order;) all = all * s + falling(n, order) * get(terms, n);
+    for (std::size_t k = 0; k < order; ++k) all *= over_h_;
+    return all;
   }
-  Real bound(const Function& g, std::size_t order) const { return bound(g.terms, order); }
+  Real bound(const Terms& terms, std::size_t order) const {
+    const Real end = length_ * over_h_;
+    Real all{0};
+    for (std::size_t n = joint_terms; n-- > order;)
+      all = all * end + falling(n, order) * absolute(get(terms, n));
+    for (std::size_t k = 0; k < order; ++k) all *= over_h_;
+    return all;
+  }
   LocalEnclosure<Real> enclosure(const Function& g, const Real& t) const {
     const SeriesAt<Real> now = sum<Real>(g.terms, t * over_h_);
     return {{now.u, over_h_ * now.u1, over_h_ * over_h_ * now.u2, g.third}};
-  }
-  // Whether Lemma L2 proves that a function stays positive in the whole piece.
-  bool stays(const Function& g) const {
-    const SeriesAt<Real> end = sum<Real>(g.terms, length_ * over_h_);
-    return stays_open(get(g.terms, 0), Real(over_h_ * get(g.terms, 1)), end.u, Real(over_h_ * end.u1),
-                      length_, bound(g.terms, 4));
   }
   // Bounds on |x''| and |x'''| in the whole piece.
   Real second_of_x(const Real& = Real(0)) const { return bound(x_, 2); }
@@ -371,11 +379,6 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force, components>
       }
     }
   }
-  Displacement<Real> change(const Terms& terms, const Real& t) const {
-    const SeriesAt<Real> by = Departure<Real, joint_terms / 2>{terms}.at(t * over_h_);
-    const Real v0 = over_h_ * get(terms, 1), dv = over_h_ * by.u1;
-    return {get(terms, 0) + (v0 * t + by.u), v0 + dv, by.u, dv};
-  }
   // The sum of the sizes of the terms that make up h^2 x'' at the beginning, without the force.
   Real rounding_size() const {
     const std::size_t count = nu_.size();
@@ -389,17 +392,16 @@ class JointContact : public ProofsByBounds<JointContact<Real, Force, components>
     terms[n / 2] =
         n % 2 == 0 ? SimdPair<Real>{value, terms[n / 2][1]} : SimdPair<Real>{terms[n / 2][0], value};
   }
-  // A bound on the `order`-th derivative by t in the piece: the sum of the sizes of its terms at the end.
-  Real bound(const Terms& terms, std::size_t order) const {
-    const Real end = length_ * over_h_;
-    Real all{0};
-    for (std::size_t n = joint_terms; n-- > order;) {
-      Real factor{1};
-      for (std::size_t k = 0; k < order; ++k) factor *= Real(double(n - k));
-      all = all * end + factor * absolute(get(terms, n));
-    }
-    for (std::size_t k = 0; k < order; ++k) all *= over_h_;
-    return all;
+  // n (n - 1) ..., with `order` factors.
+  static Real falling(std::size_t n, std::size_t order) {
+    static constexpr auto all = [] {
+      std::array<std::array<double, joint_terms>, 7> of{};
+      for (std::size_t k = 0; k < of.size(); ++k)
+        for (std::size_t m = k; m < joint_terms; ++m)
+          of[k][m] = k == 0 ? 1 : of[k - 1][m] * double(m - (k - 1));
+      return of;
+    }();
+    return Real(all[order][n]);
   }
   Terms terms_of(std::size_t i) const {
     const std::size_t count = nu_.size();

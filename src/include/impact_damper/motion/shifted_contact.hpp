@@ -18,7 +18,8 @@ class ShiftedContact : public ProofsByBounds<ShiftedContact<Real, Force>, Real> 
   // at rest; start: x, x', q in the place of y, and q'.
   ShiftedContact(const ContactModes<Real, Force>& modes, const Real& begin, const State<Real>& start,
                  Wall wall, const std::array<Real, 2>& rest)
-      : contact_(modes, begin, modes.forcing.phase(begin),
+      : modes_(modes),
+        contact_(modes, begin, modes.forcing.phase(begin),
                  {start.x - rest[0], start.v, start.y - rest[1], start.w}, wall, Real(0)),
         rest_(rest),
         start_(start) {}
@@ -27,9 +28,24 @@ class ShiftedContact : public ProofsByBounds<ShiftedContact<Real, Force>, Real> 
   const Contact<Real, Force>& contact() const { return contact_; }
   State<Real> at(const Real& t) const {
     if (t == 0) return start_;
-    const State<Real> now = contact_.at(t);
-    return {x_at(t), now.v, rest_[1] + now.y, now.w};
+    State<Real> now = shifted(contact_.at(t));
+    // By its change, as x must not take the rounding errors of its place of rest, which may be much larger.
+    if (rest_[0] != 0) now.x = x_at(t);
+    return now;
   }
+  // Returns q and its first three derivatives at t, by (M2.2).
+  std::array<Real, 4> leads_of_q(const Real& t) const {
+    const ContactModes<Real, Force>& c = modes_;
+    const State<Real> now = t == 0 ? start_ : shifted(contact_.at(t));
+    const auto f = c.forcing.template derivatives<2>(contact_.phase_at(t));
+    const auto wall = [&](const Real& q, const Real& q1) { return c.damping * q1 + c.stiffness * q; };
+    const Real push = wall(Real(now.y - rest_[1]), now.w),
+               x2 = f[0] - 2 * c.zeta * now.v - (now.x - rest_[0]) + c.nu * push, q2 = -(x2 + push);
+    const Real push1 = wall(now.w, q2), x3 = f[1] - 2 * c.zeta * x2 - now.v + c.nu * push1;
+    return {now.y, now.w, q2, -(x3 + push1)};
+  }
+  // A bound on the `order`-th derivative of q, 4 or 5, for a time `span`.
+  Real bound_of_q(std::size_t order, const Real& span) const { return contact_.high_bound_of_q(order, span); }
   // Encloses sign times the `order`-th derivative of q, 0 or 1, from t until t + span.
   LocalEnclosure<Real> derivative_of_q(std::size_t order, const Real& sign, const Real& t,
                                        const Real& span) const {
@@ -54,7 +70,7 @@ class ShiftedContact : public ProofsByBounds<ShiftedContact<Real, Force>, Real> 
   Real resolution() const { return contact_.resolution(); }
 
  private:
-  // By its change, as x must not take the rounding errors of its place of rest, which may be much larger.
+  State<Real> shifted(const State<Real>& by) const { return {rest_[0] + by.x, by.v, rest_[1] + by.y, by.w}; }
   Real x_at(const Real& t) const {
     return t == 0 ? start_.x : Real(start_.x + (start_.v * t + contact_.change_of_x(t)->dx));
   }
@@ -65,6 +81,7 @@ class ShiftedContact : public ProofsByBounds<ShiftedContact<Real, Force>, Real> 
     return all;
   }
 
+  const ContactModes<Real, Force>& modes_;
   Contact<Real, Force> contact_;
   std::array<Real, 2> rest_;
   State<Real> start_;

@@ -49,9 +49,8 @@ class ShiftedMotion : public WithoutContact<ShiftedMotion<Real, Force>, Real> {
    public:
     Now(const ShiftedMotion& motion, const Real& t, const Real& span)
         : displacement_(motion.primary_.at(t)),
-          x_(motion.primary_.template instant<7>(displacement_.x, displacement_.v, t)),
+          x_(motion.primary_.template instant<8>(displacement_.x, displacement_.v, t)),
           span_(span) {}
-    Now& of_x() { return *this; }
     Now& of_mass(std::size_t) { return *this; }
     const Displacement<Real>& displacement() const { return displacement_; }  // of x - rest
     const Real& operator[](std::size_t order) const { return x_[order]; }
@@ -62,9 +61,9 @@ class ShiftedMotion : public WithoutContact<ShiftedMotion<Real, Force>, Real> {
 
    private:
     Displacement<Real> displacement_;
-    Instant<Real, 7, Force> x_;
+    Instant<Real, 8, Force> x_;
     Real span_;
-    std::array<Real, 6> bounds_{Real(-1), Real(-1), Real(-1), Real(-1), Real(-1), Real(-1)};
+    std::array<Real, 7> bounds_{Real(-1), Real(-1), Real(-1), Real(-1), Real(-1), Real(-1), Real(-1)};
   };
 
   // y and y' are 0: each secondary mass has its own.
