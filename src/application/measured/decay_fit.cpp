@@ -424,8 +424,8 @@ std::vector<std::size_t> by_nearness(const Points& points, const std::vector<Los
     distances.emplace_back(sum, i);
   }
   std::ranges::sort(distances);
-  std::vector<std::size_t> order;
-  for (const auto& each : distances) order.push_back(each.second);
+  std::vector<std::size_t> order(distances.size());
+  std::ranges::transform(distances, order.begin(), [](const auto& each) { return each.second; });
   return order;
 }
 

@@ -1,6 +1,7 @@
 #include "application/measured/record.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -72,11 +73,10 @@ bool is_motion(Measure measure) {
 }
 bool is_time_name(std::string_view name) {
   const std::string lower = in_lower_case(name);
-  if (lower == "t") return true;
-  for (const std::string_view word :
-       {"time", "zeit", "temps", "tiempo", "tempo", "x_value", "date", "datum", "elapsed"})
-    if (lower.starts_with(word)) return true;
-  return false;
+  constexpr auto beginnings = std::to_array<std::string_view>(
+      {"time", "zeit", "temps", "tiempo", "tempo", "x_value", "date", "datum", "elapsed"});
+  return lower == "t" ||
+         std::ranges::any_of(beginnings, [&](std::string_view word) { return lower.starts_with(word); });
 }
 bool is_time(const Column& column) {
   return column.unit ? column.unit->measure == Measure::time : column.has_stamps || is_time_name(column.name);

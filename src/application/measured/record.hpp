@@ -53,7 +53,7 @@ inline constexpr std::size_t least_samples = 64;
 // not as above, if file and options leave open which columns are meant or what their units are, or if it has
 // fewer than `least_samples` values. These lines begin with the name of the file, or `name`.
 MeasuredRecord read_measured_record(const std::filesystem::path& file, const RecordOptions& options = {});
-MeasuredRecord parse_measured_record(const std::string& name, std::string_view text,
+MeasuredRecord parse_measured_record(const std::string& name, std::string_view bytes,
                                      const RecordOptions& options = {});
 
 // Throws InputError, naming `name`, if a record has fewer than `least_samples` values.

@@ -257,8 +257,9 @@ std::optional<Layout> layout_of(const std::vector<std::string_view>& lines) {
     for (std::size_t i = 0; i < lines.size(); i += stride) {
       if (is_comment(lines[i], layout.separator)) continue;
       split(lines[i], layout.separator, cells);
-      std::vector<Cell> read;
-      for (const std::string_view cell : cells) read.push_back(cell_of(cell, layout.decimal));
+      std::vector<Cell> read(cells.size());
+      std::ranges::transform(cells, read.begin(),
+                             [&](std::string_view cell) { return cell_of(cell, layout.decimal); });
       if (std::ranges::find(read, Kind::number, &Cell::kind) == read.end()) continue;
       Rows& rows = by_cells[cells.size()];
       ++rows.rows;
@@ -398,7 +399,7 @@ const Unit* find_unit(std::string_view text) {
                                    {"·", ""},
                                    {"sec", "s"}})
     replace(plain, what, with);
-  const auto found = std::ranges::find_if(units, [&](const Unit& unit) {
+  const auto* const found = std::ranges::find_if(units, [&](const Unit& unit) {
     std::string name = in_lower_case(unit.name);
     replace(name, "sec", "s");
     return name == plain;
@@ -594,8 +595,8 @@ Columns columns_of_universal_file(const std::string& name, std::string_view text
       place += width;
       return read;
     };
-    for (double i = 0; i < count; ++i) {
-      time.values.push_back(is_even ? begin + i * step : next(13));
+    for (std::int64_t i = 0; i < std::int64_t(count); ++i) {
+      time.values.push_back(is_even ? begin + double(i) * step : next(13));
       value.values.push_back(next(is_double ? 20 : 13));
     }
     columns.all.emplace_back(std::move(time));

@@ -119,11 +119,13 @@ LossOfOne measured_alone(const DamperSetQuestion& question, double mass_ratio, d
   }
   constexpr double ratio = 1.1, above = 1.2;  // of neighbours; of the release, so that `upper` is known
   LossOfOne alone;
-  for (double c = least; c < bounds.most * (1 + off) * ratio; c *= ratio) {
+  double c = least;
+  while (c < bounds.most * (1 + off) * ratio) {
     Scene scene = scene_alone(mass_ratio, restitution, above * question.release / c, question.to / c);
     set_components(scene, question, c);
     alone.clearances.push_back(c);
     alone.losses.push_back(measured_alone(scene, threads));
+    c *= ratio;
   }
   return alone;
 }
