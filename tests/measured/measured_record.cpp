@@ -263,8 +263,8 @@ TEST_CASE("each unit is what it is in millimetres and seconds") {
            {"M/S2", 1e3, acceleration},    {"m_per_s2", 1e3, acceleration}, {"mm/s2", 1, acceleration},
            {"m/sec^2", 1e3, acceleration}, {"ft/s^2", 304.8, acceleration}, {"mg", 9.80665, acceleration},
            {"Gal", 10, acceleration}}) {
-    CAPTURE(std::string(unit));
     const std::string head = "t_s,y (" + std::string(unit) + ")\n";
+    CAPTURE(head);
     const MeasuredRecord record = parse_measured_record("r.csv", head + rows(64));
     CHECK(record.quantity == quantity);
     CHECK(record.value[10] == doctest::Approx(-factor).epsilon(1e-15));
