@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -279,15 +280,17 @@ TEST_CASE("each unit is what it is in millimetres and seconds") {
           doctest::Approx(10.5 * factor).epsilon(1e-15));
 }
 
+template <class... Values>
+std::string field(const char* format, const Values&... values) {
+  std::array<char, 100> text{};
+  std::snprintf(text.data(), text.size(), format, values...);
+  return text.data();
+}
+
 TEST_CASE("universal files are read by their fixed columns") {
   for (const bool is_even : {false, true}) {
     for (const bool is_double : {false, true}) {
       for (const char* const unit : {"mm", "NONE"}) {
-        const auto field = [](const char* format, auto... values) {
-          std::string text(100, ' ');
-          text.resize(std::size_t(std::snprintf(text.data(), text.size(), format, values...)));
-          return text;
-        };
         std::string text =
             "    -1\n   164\n         1  SI: Meter (newton)         2\n\n    -1\n    -1\n    58\ntip\nNONE\n"
             "03-May-24 10:11:12\nNONE\nNONE\n"

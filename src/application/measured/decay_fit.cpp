@@ -696,7 +696,8 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
     if ((best && best->normal_deviate <= most_normal_deviate) || int(starts.size()) == most_starts) break;
     const Vector& place = points.place[i];
     const auto is_near = [&](const Vector& other) {
-      return std::ranges::equal(place, other, [](double a, double b) { return std::abs(a - b) < apart; });
+      return std::equal(place.begin(), place.end(), other.begin(),
+                        [](double a, double b) { return std::abs(a - b) < apart; });
     };
     if (std::ranges::any_of(starts, is_near)) continue;
     starts.push_back(place);

@@ -20,12 +20,12 @@ constexpr double most_value = 1e15;  // s, mm, mm/s or mm/s^2: as in scenes
 }
 
 // "column 3, "ch2 (g)"", counted from 1.
-std::string called(std::size_t index, const Column& column) {
+std::string called(std::size_t index, const RecordColumn& column) {
   std::string text = filled("column {}", index + 1);
   if (!column.name.empty()) text += ", " + in_quotes(column.name) + ",";
   return text;
 }
-std::string listed_columns(const Columns& columns) {
+std::string listed_columns(const RecordColumns& columns) {
   std::vector<std::string> texts;
   for (std::size_t j = 0; j < columns.all.size(); ++j) {
     if (!columns.all[j]) continue;
@@ -38,10 +38,10 @@ std::string listed_columns(const Columns& columns) {
 
 struct Choice {
   std::size_t index;
-  const Unit* unit;  // null if neither the file nor the option says it
+  const RecordUnit* unit;  // null if neither the file nor the option says it
 };
 // Returns the column that an option names. Absent, with the problem added, if there is none.
-std::optional<Choice> chosen(const Columns& columns, const std::string& option, const std::string& text,
+std::optional<Choice> chosen(const RecordColumns& columns, const std::string& option, const std::string& text,
                              std::vector<Problem>& problems) {
   const auto find = [&](std::string_view word) -> std::optional<std::size_t> {
     if (const auto number = parse_integer(word))
@@ -55,7 +55,7 @@ std::optional<Choice> chosen(const Columns& columns, const std::string& option, 
   if (const auto index = find(text)) return Choice{*index, columns.all[*index]->unit};
   const std::size_t colon = std::min(text.rfind(':'), text.size());
   const auto index = find(text.substr(0, colon));
-  const Unit* const unit = colon < text.size() ? find_unit(text.substr(colon + 1)) : nullptr;
+  const RecordUnit* const unit = colon < text.size() ? find_unit(text.substr(colon + 1)) : nullptr;
   if (index && unit) return Choice{*index, unit};
   problems.push_back(
       {option, index ? filled("must end in a unit such as mm, m/s^2 or ms, got {}", in_quotes(text))
@@ -63,13 +63,14 @@ std::optional<Choice> chosen(const Columns& columns, const std::string& option, 
   return std::nullopt;
 }
 // "column 2, "x", has no unit: give --column 2:mm, or ..."
-Problem without_unit(std::size_t index, const Column& column, const std::string& option,
+Problem without_unit(std::size_t index, const RecordColumn& column, const std::string& option,
                      const std::string& units) {
   return {"", filled("{} has no unit: give {} {}:{}", called(index, column), option, index + 1, units)};
 }
 
-bool is_motion(Measure measure) {
-  return measure == Measure::displacement || measure == Measure::velocity || measure == Measure::acceleration;
+bool is_motion(RecordQuantity measure) {
+  return measure == RecordQuantity::displacement || measure == RecordQuantity::velocity ||
+         measure == RecordQuantity::acceleration;
 }
 bool is_time_name(std::string_view name) {
   const std::string lower = in_lower_case(name);
@@ -78,12 +79,13 @@ bool is_time_name(std::string_view name) {
   return lower == "t" ||
          std::ranges::any_of(beginnings, [&](std::string_view word) { return lower.starts_with(word); });
 }
-bool is_time(const Column& column) {
-  return column.unit ? column.unit->measure == Measure::time : column.has_stamps || is_time_name(column.name);
+bool is_time(const RecordColumn& column) {
+  return column.unit ? column.unit->measure == RecordQuantity::time
+                     : column.has_stamps || is_time_name(column.name);
 }
 
 // The column of the motion: the one that is named, else the only one whose unit could be that.
-std::optional<Choice> value_of(const Columns& columns, const RecordOptions& options,
+std::optional<Choice> value_of(const RecordColumns& columns, const RecordOptions& options,
                                std::vector<Problem>& problems) {
   const std::string units = "mm, or m/s, g, V and so on";
   std::vector<Choice> values, others;
@@ -94,7 +96,7 @@ std::optional<Choice> value_of(const Columns& columns, const RecordOptions& opti
   } else {
     for (std::size_t j = 0; j < columns.all.size(); ++j) {
       if (!columns.all[j] || is_time(*columns.all[j])) continue;
-      const Unit* const unit = columns.all[j]->unit;
+      const RecordUnit* const unit = columns.all[j]->unit;
       if (!unit) others.push_back({j, unit});
       if (unit && (options.sensitivity || is_motion(unit->measure))) values.push_back({j, unit});
     }
@@ -115,7 +117,7 @@ std::optional<Choice> value_of(const Columns& columns, const RecordOptions& opti
 
 // The column of times: the one that is named, else of those that are times the last one before the values.
 // Absent as well if the file or the options give a rate instead.
-std::optional<Choice> time_of(const Columns& columns, const RecordOptions& options,
+std::optional<Choice> time_of(const RecordColumns& columns, const RecordOptions& options,
                               const std::optional<Choice>& value, std::vector<Problem>& problems) {
   if (options.rate) return std::nullopt;
   std::optional<Choice> time;
@@ -133,11 +135,11 @@ std::optional<Choice> time_of(const Columns& columns, const RecordOptions& optio
           {"", "has no column with a unit of time: give --time N:s, or ms or us, or --rate in Hz"});
     if (!time) return time;
   }
-  const Column& column = *columns.all[time->index];
+  const RecordColumn& column = *columns.all[time->index];
   if (column.has_stamps || (!time->unit && column.name == "X_Value")) time->unit = find_unit("s");
   if (!time->unit) {
     problems.push_back(without_unit(time->index, column, "--time", "s, or ms or us"));
-  } else if (time->unit->measure != Measure::time) {
+  } else if (time->unit->measure != RecordQuantity::time) {
     problems.push_back({"--time", filled("must be in a unit of time, got {}", time->unit->name)});
   }
   return time;
@@ -145,10 +147,10 @@ std::optional<Choice> time_of(const Columns& columns, const RecordOptions& optio
 
 // What one unit of the column is, in mm, mm/s or mm/s^2.
 struct Scale {
-  Measure measure = Measure::displacement;
+  RecordQuantity measure = RecordQuantity::displacement;
   double factor = 1;
 };
-Scale scale_of(const Unit& unit, const RecordOptions& options, std::vector<Problem>& problems) {
+Scale scale_of(const RecordUnit& unit, const RecordOptions& options, std::vector<Problem>& problems) {
   const std::string example = "as in \"100 mV/g\"";
   if (!options.sensitivity) {
     if (!is_motion(unit.measure))
@@ -159,10 +161,10 @@ Scale scale_of(const Unit& unit, const RecordOptions& options, std::vector<Probl
   const std::size_t end = std::min(text.find_first_not_of("+-.0123456789"), text.size()),
                     slash = std::min(text.find('/', end), text.size());
   const auto each = parse_number(text.substr(0, end));
-  const Unit* const signal = find_unit(text.substr(end, slash - end));
-  const Unit* const motion = slash < text.size() ? find_unit(text.substr(slash + 1)) : nullptr;
-  if (!each || *each == 0 || !signal || is_motion(signal->measure) || signal->measure == Measure::time ||
-      !motion || !is_motion(motion->measure)) {
+  const RecordUnit* const signal = find_unit(text.substr(end, slash - end));
+  const RecordUnit* const motion = slash < text.size() ? find_unit(text.substr(slash + 1)) : nullptr;
+  if (!each || *each == 0 || !signal || is_motion(signal->measure) ||
+      signal->measure == RecordQuantity::time || !motion || !is_motion(motion->measure)) {
     problems.push_back(
         {"--sensitivity",
          filled("must be V, mV, counts or FS per unit of the motion, {}, got {}", example, in_quotes(text))});
@@ -174,18 +176,19 @@ Scale scale_of(const Unit& unit, const RecordOptions& options, std::vector<Probl
   return {motion->measure, unit.factor / (*each * signal->factor) * motion->factor};
 }
 
-MeasuredRecord record_of(const std::string& name, const Columns& columns, const RecordOptions& options) {
+MeasuredRecord record_of(const std::string& name, const RecordColumns& columns,
+                         const RecordOptions& options) {
   std::vector<Problem> problems;
   const auto choice = value_of(columns, options, problems);
   const auto time = time_of(columns, options, choice, problems);
   const Scale scale = choice ? scale_of(*choice->unit, options, problems) : Scale{};
   if (!problems.empty()) throw InputError(name, problems);
   const Choice& value = *choice;
-  const Column& of_value = *columns.all[value.index];
+  const RecordColumn& of_value = *columns.all[value.index];
   MeasuredRecord record;
-  record.quantity = scale.measure == Measure::displacement ? MeasuredQuantity::displacement
-                    : scale.measure == Measure::velocity   ? MeasuredQuantity::velocity
-                                                           : MeasuredQuantity::acceleration;
+  record.quantity = scale.measure == RecordQuantity::displacement ? MeasuredQuantity::displacement
+                    : scale.measure == RecordQuantity::velocity   ? MeasuredQuantity::velocity
+                                                                  : MeasuredQuantity::acceleration;
   const double rate = options.rate ? *options.rate : columns.rate.value_or(0);
 
   std::size_t wrong = 0;

@@ -37,66 +37,66 @@ void replace(std::string& text, std::string_view what, std::string_view with) {
 // --- Units ------------------------------------------------------------------------------------------------
 
 // Of those with the same meaning the first one is printed.
-constexpr auto units = std::to_array<Unit>({
-    {"s", Measure::time, 1},
-    {"sec", Measure::time, 1},
-    {"second", Measure::time, 1},
-    {"seconds", Measure::time, 1},
-    {"ms", Measure::time, 1e-3},
-    {"msec", Measure::time, 1e-3},
-    {"millis", Measure::time, 1e-3},
-    {"us", Measure::time, 1e-6},
-    {"usec", Measure::time, 1e-6},
-    {"micros", Measure::time, 1e-6},
-    {"ns", Measure::time, 1e-9},
-    {"min", Measure::time, 60},
-    {"mm", Measure::displacement, 1},
-    {"cm", Measure::displacement, 10},
-    {"m", Measure::displacement, 1e3},
-    {"um", Measure::displacement, 1e-3},
-    {"micron", Measure::displacement, 1e-3},
-    {"nm", Measure::displacement, 1e-6},
-    {"in", Measure::displacement, 25.4},
-    {"inch", Measure::displacement, 25.4},
-    {"ft", Measure::displacement, 304.8},
-    {"mm/s", Measure::velocity, 1},
-    {"cm/s", Measure::velocity, 10},
-    {"m/s", Measure::velocity, 1e3},
-    {"um/s", Measure::velocity, 1e-3},
-    {"in/s", Measure::velocity, 25.4},
-    {"mm/s2", Measure::acceleration, 1},
-    {"mm/s/s", Measure::acceleration, 1},
-    {"mms-2", Measure::acceleration, 1},
-    {"cm/s2", Measure::acceleration, 10},
-    {"gal", Measure::acceleration, 10},
-    {"m/s2", Measure::acceleration, 1e3},
-    {"m/s/s", Measure::acceleration, 1e3},
-    {"ms-2", Measure::acceleration, 1e3},
-    {"in/s2", Measure::acceleration, 25.4},
-    {"ft/s2", Measure::acceleration, 304.8},
-    {"g", Measure::acceleration, 1e3 * standard_gravity},
-    {"mg", Measure::acceleration, standard_gravity},
-    {"V", Measure::volts, 1},
-    {"mV", Measure::volts, 1e-3},
-    {"uV", Measure::volts, 1e-6},
-    {"volt", Measure::volts, 1},
-    {"volts", Measure::volts, 1},
-    {"counts", Measure::counts, 1},
-    {"count", Measure::counts, 1},
-    {"FS", Measure::full_scale, 1},
+constexpr auto units = std::to_array<RecordUnit>({
+    {"s", RecordQuantity::time, 1},
+    {"sec", RecordQuantity::time, 1},
+    {"second", RecordQuantity::time, 1},
+    {"seconds", RecordQuantity::time, 1},
+    {"ms", RecordQuantity::time, 1e-3},
+    {"msec", RecordQuantity::time, 1e-3},
+    {"millis", RecordQuantity::time, 1e-3},
+    {"us", RecordQuantity::time, 1e-6},
+    {"usec", RecordQuantity::time, 1e-6},
+    {"micros", RecordQuantity::time, 1e-6},
+    {"ns", RecordQuantity::time, 1e-9},
+    {"min", RecordQuantity::time, 60},
+    {"mm", RecordQuantity::displacement, 1},
+    {"cm", RecordQuantity::displacement, 10},
+    {"m", RecordQuantity::displacement, 1e3},
+    {"um", RecordQuantity::displacement, 1e-3},
+    {"micron", RecordQuantity::displacement, 1e-3},
+    {"nm", RecordQuantity::displacement, 1e-6},
+    {"in", RecordQuantity::displacement, 25.4},
+    {"inch", RecordQuantity::displacement, 25.4},
+    {"ft", RecordQuantity::displacement, 304.8},
+    {"mm/s", RecordQuantity::velocity, 1},
+    {"cm/s", RecordQuantity::velocity, 10},
+    {"m/s", RecordQuantity::velocity, 1e3},
+    {"um/s", RecordQuantity::velocity, 1e-3},
+    {"in/s", RecordQuantity::velocity, 25.4},
+    {"mm/s2", RecordQuantity::acceleration, 1},
+    {"mm/s/s", RecordQuantity::acceleration, 1},
+    {"mms-2", RecordQuantity::acceleration, 1},
+    {"cm/s2", RecordQuantity::acceleration, 10},
+    {"gal", RecordQuantity::acceleration, 10},
+    {"m/s2", RecordQuantity::acceleration, 1e3},
+    {"m/s/s", RecordQuantity::acceleration, 1e3},
+    {"ms-2", RecordQuantity::acceleration, 1e3},
+    {"in/s2", RecordQuantity::acceleration, 25.4},
+    {"ft/s2", RecordQuantity::acceleration, 304.8},
+    {"g", RecordQuantity::acceleration, 1e3 * standard_gravity},
+    {"mg", RecordQuantity::acceleration, standard_gravity},
+    {"V", RecordQuantity::volts, 1},
+    {"mV", RecordQuantity::volts, 1e-3},
+    {"uV", RecordQuantity::volts, 1e-6},
+    {"volt", RecordQuantity::volts, 1},
+    {"volts", RecordQuantity::volts, 1},
+    {"counts", RecordQuantity::counts, 1},
+    {"count", RecordQuantity::counts, 1},
+    {"FS", RecordQuantity::full_scale, 1},
 });
 
 // The unit in a head: in brackets, after a slash, an underscore or a blank, or the whole of it.
-const Unit* unit_in(std::string_view head) {
-  if (const Unit* unit = find_unit(head)) return unit;
+const RecordUnit* unit_in(std::string_view head) {
+  if (const RecordUnit* unit = find_unit(head)) return unit;
   for (const auto& [open, close] : {std::pair{'(', ')'}, std::pair{'[', ']'}, std::pair{'{', '}'}}) {
     const std::size_t from = head.rfind(open), to = head.rfind(close);
     if (from == std::string_view::npos || to == std::string_view::npos || to < from) continue;
-    if (const Unit* unit = find_unit(head.substr(from + 1, to - from - 1))) return unit;
+    if (const RecordUnit* unit = find_unit(head.substr(from + 1, to - from - 1))) return unit;
   }
   for (std::size_t at = 1; at < head.size(); ++at)
     if (std::string_view("/_ ").find(head[at]) != std::string_view::npos)
-      if (const Unit* unit = find_unit(head.substr(at + 1))) return unit;
+      if (const RecordUnit* unit = find_unit(head.substr(at + 1))) return unit;
   return nullptr;
 }
 
@@ -108,8 +108,7 @@ struct Layout {
   std::size_t cells = 0;  // in a row, without empty ones at its end
   std::vector<bool> has_numbers{};
 };
-constexpr std::array<Layout, 7> layouts{
-    {{'\t', '.'}, {'\t', ','}, {';', '.'}, {';', ','}, {',', '.'}, {' ', '.'}, {' ', ','}}};
+constexpr std::array<std::string_view, 7> layouts{"\t.", "\t,", ";.", ";,", ",.", " .", " ,"};
 
 std::string in_words(const Layout& layout) {
   const std::string_view between = layout.separator == '\t'  ? "tabs"
@@ -245,7 +244,8 @@ std::optional<Layout> layout_of(const std::vector<std::string_view>& lines) {
   std::optional<Layout> best;
   std::int64_t most = 0;
   std::vector<std::string_view> cells;
-  for (Layout layout : layouts) {
+  for (const std::string_view each : layouts) {
+    Layout layout{each[0], each[1]};
     struct Count {
       std::int64_t numbers = 0, words = 0, days = 0;
     };
@@ -343,12 +343,12 @@ bool is_row(const Layout& layout, const std::vector<std::string_view>& cells,
 // The heads of the columns.
 struct Heads {
   std::vector<std::string> text;
-  std::vector<const Unit*> unit;  // of a row of units
+  std::vector<const RecordUnit*> unit;  // of a row of units
   std::size_t first_line;
 };
 // Returns the heads that are in the last lines above the numbers.
 Heads heads_above(const std::vector<std::string_view>& lines, std::size_t first, const Layout& layout) {
-  Heads heads{std::vector<std::string>(layout.cells), std::vector<const Unit*>(layout.cells), first};
+  Heads heads{std::vector<std::string>(layout.cells), std::vector<const RecordUnit*>(layout.cells), first};
   std::vector<std::string_view> cells;
   constexpr int most_lines = 4;
   int looked_at = 0;
@@ -384,7 +384,7 @@ Heads heads_above(const std::vector<std::string_view>& lines, std::size_t first,
 
 }  // namespace
 
-const Unit* find_unit(std::string_view text) {
+const RecordUnit* find_unit(std::string_view text) {
   std::string plain = in_lower_case(trimmed(text, " \t()[]{}"));
   if (plain.empty() || plain.size() > 20) return nullptr;
   for (const auto& [what, with] : {std::pair<std::string_view, std::string_view>{"_per_", "/"},
@@ -399,13 +399,13 @@ const Unit* find_unit(std::string_view text) {
                                    {"·", ""},
                                    {"sec", "s"}})
     replace(plain, what, with);
-  const auto* const found = std::ranges::find_if(units, [&](const Unit& unit) {
+  const auto* const found = std::ranges::find_if(units, [&](const RecordUnit& unit) {
     std::string name = in_lower_case(unit.name);
     replace(name, "sec", "s");
     return name == plain;
   });
   if (found == units.end()) return nullptr;
-  return &*std::ranges::find_if(units, [&](const Unit& unit) {
+  return &*std::ranges::find_if(units, [&](const RecordUnit& unit) {
     return unit.measure == found->measure && unit.factor == found->factor;
   });
 }
@@ -434,7 +434,7 @@ std::string as_utf8(std::string_view bytes) {
   return text;
 }
 
-Columns columns_of_text(const std::string& name, std::string_view text, bool has_rate) {
+RecordColumns columns_of_text(const std::string& name, std::string_view text, bool has_rate) {
   const std::vector<std::string_view> lines = lines_of(text);
   std::optional<Layout> layout = layout_of(lines);
   if (!layout) throw InputError(name, {{"", "must have rows of numbers, got none"}});
@@ -458,7 +458,7 @@ Columns columns_of_text(const std::string& name, std::string_view text, bool has
   }
   if (end == 0) first = begin, end = lines.size();
 
-  Columns columns;
+  RecordColumns columns;
   columns.all.resize(layout->cells);
   const Heads heads = heads_above(lines, first, *layout);
   for (std::size_t j = 0; j < layout->cells; ++j) {
@@ -538,11 +538,13 @@ bool is_universal_file(std::string_view text) {
   return first != std::string_view::npos && trimmed(text.substr(first, end - first)) == "-1";
 }
 
-Columns columns_of_universal_file(const std::string& name, std::string_view text) {
+RecordColumns columns_of_universal_file(const std::string& name, std::string_view text) {
   const std::vector<std::string_view> lines = lines_of(text);
-  Columns columns;
+  RecordColumns columns;
   const auto fail = [&](std::size_t line, const std::string& what) {
-    throw InputError(name, {{"line " + std::to_string(line + 1), what}});
+    Problems problems;
+    problems.add(line + 1, what);
+    problems.throw_if_any(name);
   };
   // The field of a line from a column on, of fixed width.
   const auto field = [&](std::size_t line, std::size_t from, std::size_t width) {
@@ -577,13 +579,17 @@ Columns columns_of_universal_file(const std::string& name, std::string_view text
     const auto label = [&](std::size_t line, std::size_t from) { return field(line, from, 20); };
     constexpr std::array<std::pair<double, std::string_view>, 3> measures{
         {{8, "m"}, {11, "m/s"}, {12, "m/s2"}}};
-    Column value{label(form + 2, 25), find_unit(label(form + 2, 46)), {}};
+    RecordColumn value;
+    value.name = label(form + 2, 25);
+    value.unit = find_unit(label(form + 2, 46));
     if (value.name.empty() || value.name == "NONE") value.name = field(head, 0, 80);
     // Without a name for it the unit is SI's, unless a data set 164 says that the file has others.
     if (!value.unit && is_si)
       for (const auto& [of, unit] : measures)
         if (of == number(form + 2, 0, 10)) value.unit = find_unit(unit);
-    Column time{"time", find_unit("s"), {}};
+    RecordColumn time;
+    time.name = "time";
+    time.unit = find_unit("s");
     // Of single numbers six stand in a row, of double ones four, or two pairs with a single one.
     const std::size_t row = !is_double ? 78 : is_even ? 80 : 66;
     std::size_t line = form + 5, place = 0;
@@ -617,7 +623,7 @@ bool is_sound(std::string_view bytes) {
 }
 
 #ifdef IMPACT_DAMPER_SNDFILE
-Columns columns_of_sound(const std::filesystem::path& file) {
+RecordColumns columns_of_sound(const std::filesystem::path& file) {
   SF_INFO info{};
   const std::unique_ptr<SNDFILE, int (*)(SNDFILE*)> sound(sf_open(file.c_str(), SFM_READ, &info), sf_close);
   if (!sound) throw InputError(file.string(), {{"", filled("is no sound file: {}", sf_strerror(nullptr))}});
@@ -625,18 +631,18 @@ Columns columns_of_sound(const std::filesystem::path& file) {
   std::vector<double> samples(std::size_t(info.frames) * channels);
   if (sf_readf_double(sound.get(), samples.data(), info.frames) != info.frames)
     throw InputError(file.string(), {{"", "ends before its last sample"}});
-  Columns columns;
+  RecordColumns columns;
   columns.rate = double(info.samplerate);
   columns.read_as = "sound";
   for (std::size_t j = 0; j < channels; ++j) {
-    Column column{filled("channel {}", j + 1), find_unit("FS"), {}};
+    RecordColumn column{filled("channel {}", j + 1), find_unit("FS"), {}};
     for (std::size_t i = j; i < samples.size(); i += channels) column.values.push_back(samples[i]);
     columns.all.emplace_back(std::move(column));
   }
   return columns;
 }
 #else
-Columns columns_of_sound(const std::filesystem::path& file) {
+RecordColumns columns_of_sound(const std::filesystem::path& file) {
   throw InputError(file.string(),
                    {{"", "is a sound file, which this program was built without: libsndfile"}});
 }
