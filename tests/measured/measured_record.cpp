@@ -151,6 +151,13 @@ TEST_CASE("records are read as instruments write them") {
                         {.rate = 4}) ==
           "column 2, \"x_mm\", as displacement in mm; 4 samples/s; tabs between cells");
   }
+  SUBCASE("a day that is none is no clock stamp") {
+    for (const char* const day :
+         {"2024-02-30", "2023-02-29", "2024-13-01", "1e300.1.2024", "0/1/2024", "1.2"})
+      CHECK(problem_of(made("time,x_mm\n", [&](double, double x) {
+              return day + std::string("T10:11:12,") + n(x) + "\n";
+            })) == "r.csv: must have rows of numbers, got none");
+  }
   SUBCASE("Arduino: a byte order mark, CRLF, microseconds by name") {
     CHECK(is_the_record(made("\xef\xbb\xbfmicros,position_um\r\n",
                              [&](double t, double x) {
@@ -175,6 +182,7 @@ TEST_CASE("records are read as instruments write them") {
     is_the_record(text, {.column = "5:V", .time = "4:s", .sensitivity = "100 mV/mm"}, 10);
     is_the_record(text, {.column = "5:mV", .time = "4:s", .sensitivity = "2 V/(m/s)"}, 0.5,
                   MeasuredQuantity::velocity);
+    is_the_record(text, {.column = "5:V", .time = "4:s", .sensitivity = "-100 mV/mm"}, -10);
     CHECK(problem_of(text, {.column = "5:V", .time = "4:s", .sensitivity = "100 counts/mm"}) ==
           "r.csv: --sensitivity: must be in V, as the column is, got counts");
     for (const char* const wrong : {"100", "mV/g", "0 mV/g", "100 mV", "100 mV/s", "1e3 mm/g"})

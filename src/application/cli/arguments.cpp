@@ -98,26 +98,6 @@ void Arguments::finish() const {
 
 Threads threads_of(Arguments& arguments) { return arguments.whole_number("--threads", within(1, 1024)); }
 
-std::vector<std::string_view> parts_of(std::string_view text, char between) {
-  std::vector<std::string_view> parts;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(between, begin), text.size());
-    parts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return parts;
-}
-
-std::optional<std::vector<double>> parse_numbers(std::string_view text, char between) {
-  std::vector<double> numbers;
-  for (const std::string_view part : parts_of(text, between)) {
-    const auto number = parse_number(part);
-    if (!number) return std::nullopt;
-    numbers.push_back(*number);
-  }
-  return numbers;
-}
-
 std::optional<Triple> parse_triple(std::string_view text) {
   const auto parts = parts_of(text, ':');
   if (parts.size() != 3) return std::nullopt;

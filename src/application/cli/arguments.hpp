@@ -92,8 +92,6 @@ class Arguments {
 // Returns --threads N, an option of every command that simulates more than one scene.
 Threads threads_of(Arguments& arguments);
 
-// Returns the parts of `text` between these characters, at least one: of "a,,b" "a", "" and "b".
-std::vector<std::string_view> parts_of(std::string_view text, char between = ',');
 // Returns the words with `between` between each two; none of them is empty.
 template <class Words>
 std::string joined(const Words& words, std::string_view between) {
@@ -110,8 +108,6 @@ std::vector<std::string_view> texts_of(const Elements& elements, Text text) {
   return texts;
 }
 
-// Reads the numbers A:B:..., or with another character between. Absent unless all are finite numbers.
-std::optional<std::vector<double>> parse_numbers(std::string_view text, char between = ':');
 // Reads A:B:N of options that ask for samples: two finite numbers and a count.
 struct Triple {
   double first = 0, second = 0;

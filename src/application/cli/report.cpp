@@ -24,12 +24,9 @@ int report(Arguments& arguments) {
   if (!without_figures) require_gnuplot(", or give --without-figures");
   warn_of_cautions("impact-damper report", file.scene, file.scales);
 
-  const Subject subject{scene_name.empty() ? "a scene" : std::filesystem::path(scene_name).stem().string(),
-                        file.description,
-                        file.scene,
-                        file.scales,
-                        engine,
-                        file.in_units ? file.in_units->gravity.value_or(standard_gravity) : standard_gravity};
+  Subject subject{scene_name.empty() ? "a scene" : std::filesystem::path(scene_name).stem().string(),
+                  file.description, file.scene, file.scales, engine};
+  if (file.in_units && file.in_units->gravity) subject.gravity = *file.in_units->gravity;
   ProgressOnStderr progress("report");
   const Findings findings =
       saying_options([&] { return examine(subject, ensemble, std::ref(progress)); }, scene_name, file.scales);

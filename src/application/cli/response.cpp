@@ -352,9 +352,10 @@ void warn_of(const Branches& found, const BranchRule& rule, const Scene& scene) 
     if (start.orbit == OrbitEnd::no_derivative)
       warn(this_command,
            has_components(scene)
-               ? "two events happen at one instant, or a mass stops where friction just holds it, so the "
-                 "motion "
-                 "has no multipliers: release the masses apart, or change friction or weight a little"
+               ? "two events happen at one instant, or a mass stops or is let go where friction just holds "
+                 "it, "
+                 "so the motion has no multipliers: release the masses apart, or change friction or weight a "
+                 "little"
                : "several masses meet walls at one instant, so their motion has no multipliers: give those "
                  "that "
                  "move alike as one with the sum of their masses, or release them apart");

@@ -31,7 +31,7 @@ std::string listed_columns(const RecordColumns& columns) {
     if (!columns.all[j]) continue;
     texts.push_back(std::to_string(j + 1));
     if (!columns.all[j]->name.empty()) texts.back() += ' ' + in_quotes(columns.all[j]->name);
-    if (columns.all[j]->unit) texts.back() += filled(" in {}", columns.all[j]->unit->name);
+    if (columns.all[j]->unit) texts.back() += filled(" in {}", columns.all[j]->unit->name());
   }
   return listed({texts.begin(), texts.end()}, "and");
 }
@@ -140,7 +140,7 @@ std::optional<Choice> time_of(const RecordColumns& columns, const RecordOptions&
   if (!time->unit) {
     problems.push_back(without_unit(time->index, column, "--time", "s, or ms or us"));
   } else if (time->unit->measure != RecordQuantity::time) {
-    problems.push_back({"--time", filled("must be in a unit of time, got {}", time->unit->name)});
+    problems.push_back({"--time", filled("must be in a unit of time, got {}", time->unit->name())});
   }
   return time;
 }
@@ -154,7 +154,7 @@ Scale scale_of(const RecordUnit& unit, const RecordOptions& options, std::vector
   const std::string example = "as in \"100 mV/g\"";
   if (!options.sensitivity) {
     if (!is_motion(unit.measure))
-      problems.push_back({"", filled("the record is in {}: give --sensitivity, {}", unit.name, example)});
+      problems.push_back({"", filled("the record is in {}: give --sensitivity, {}", unit.name(), example)});
     return {unit.measure, unit.factor};
   }
   const std::string_view text = *options.sensitivity;
@@ -172,7 +172,7 @@ Scale scale_of(const RecordUnit& unit, const RecordOptions& options, std::vector
   }
   if (signal->measure != unit.measure)
     problems.push_back(
-        {"--sensitivity", filled("must be in {}, as the column is, got {}", unit.name, signal->name)});
+        {"--sensitivity", filled("must be in {}, as the column is, got {}", unit.name(), signal->name())});
   return {motion->measure, unit.factor / (*each * signal->factor) * motion->factor};
 }
 
@@ -191,13 +191,11 @@ MeasuredRecord record_of(const std::string& name, const RecordColumns& columns,
                                                                   : MeasuredQuantity::acceleration;
   const double rate = options.rate ? *options.rate : columns.rate.value_or(0);
 
-  std::size_t wrong = 0;
-  constexpr std::size_t most_problems = 10;
+  RecordProblems wrong;
   const auto add_problem = [&](std::size_t row, const std::string& what) {
-    if (++wrong <= most_problems)
-      problems.push_back(
-          {row < columns.lines.size() ? filled("line {}", columns.lines[row]) : filled("sample {}", row + 1),
-           what});
+    wrong.add(
+        row < columns.lines.size() ? filled("line {}", columns.lines[row]) : filled("sample {}", row + 1),
+        what);
   };
   std::optional<double> last;
   for (std::size_t i = 0; i < of_value.values.size(); ++i) {
@@ -222,21 +220,19 @@ MeasuredRecord record_of(const std::string& name, const RecordColumns& columns,
     }
     if (!(std::abs(number * scale.factor) <= most_value))
       add_problem(i, filled("a value must be at most {} {} either way, got {}",
-                            most_value / value.unit->factor, value.unit->name, number));
+                            most_value / value.unit->factor, value.unit->name(), number));
     record.time.push_back(at);
     record.value.push_back(number * scale.factor);
   }
-  if (wrong > most_problems)
-    problems.push_back({"", filled("and {} more that are not valid", wrong - most_problems)});
-  if (!problems.empty()) throw InputError(name, problems);
+  wrong.throw_if_any(name);
 
   record.read_as =
-      filled("{} as {} in {}", called(value.index, of_value), name_of(record.quantity), value.unit->name);
+      filled("{} as {} in {}", called(value.index, of_value), name_of(record.quantity), value.unit->name());
   if (options.sensitivity) record.read_as += filled(", {}", *options.sensitivity);
   if (time) {
     record.read_as += filled("; time in column {} {}", time->index + 1,
                              columns.all[time->index]->has_stamps ? std::string("as clock stamps")
-                                                                  : filled("in {}", time->unit->name));
+                                                                  : filled("in {}", time->unit->name()));
   } else {
     record.read_as += filled("; {} samples/s", rate);
   }
@@ -262,21 +258,12 @@ void require_samples(const std::string& name, const MeasuredRecord& record) {
 }
 
 MeasuredRecord read_measured_record(const std::filesystem::path& file, const RecordOptions& options) {
-  const std::string bytes = read_text(file, measured_kind);
-  if (is_sound(bytes)) return record_of(file.string(), columns_of_sound(file), options);
-  return parse_measured_record(file.string(), bytes, options);
+  return parse_measured_record(file.string(), read_text(file, measured_kind), options);
 }
 
 MeasuredRecord parse_measured_record(const std::string& name, std::string_view bytes,
                                      const RecordOptions& options) {
-  if (bytes.starts_with("TDSm"))
-    reject(name, "", "is a TDMS file, which is not read: export it as text, with a head and units");
-  const std::string text = as_utf8(bytes);
-  if (text.find('\0') != std::string::npos) reject(name, "", "must be text, got bytes that are none");
-  return record_of(name,
-                   is_universal_file(text) ? columns_of_universal_file(name, text)
-                                           : columns_of_text(name, text, options.rate.has_value()),
-                   options);
+  return record_of(name, columns_of(name, bytes, options.rate.has_value()), options);
 }
 
 }  // namespace impact_damper

@@ -1,7 +1,7 @@
 #include "application/measured/record_columns.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <chrono>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -36,28 +36,19 @@ void replace(std::string& text, std::string_view what, std::string_view with) {
 
 // --- Units ------------------------------------------------------------------------------------------------
 
-// Of those with the same meaning the first one is printed.
+// name: how it is printed, then other words for it.
 constexpr auto units = std::to_array<RecordUnit>({
-    {"s", RecordQuantity::time, 1},
-    {"sec", RecordQuantity::time, 1},
-    {"second", RecordQuantity::time, 1},
-    {"seconds", RecordQuantity::time, 1},
-    {"ms", RecordQuantity::time, 1e-3},
-    {"msec", RecordQuantity::time, 1e-3},
-    {"millis", RecordQuantity::time, 1e-3},
-    {"us", RecordQuantity::time, 1e-6},
-    {"usec", RecordQuantity::time, 1e-6},
-    {"micros", RecordQuantity::time, 1e-6},
+    {"s second seconds", RecordQuantity::time, 1},
+    {"ms millis", RecordQuantity::time, 1e-3},
+    {"us micros", RecordQuantity::time, 1e-6},
     {"ns", RecordQuantity::time, 1e-9},
     {"min", RecordQuantity::time, 60},
     {"mm", RecordQuantity::displacement, 1},
     {"cm", RecordQuantity::displacement, 10},
     {"m", RecordQuantity::displacement, 1e3},
-    {"um", RecordQuantity::displacement, 1e-3},
-    {"micron", RecordQuantity::displacement, 1e-3},
+    {"um micron", RecordQuantity::displacement, 1e-3},
     {"nm", RecordQuantity::displacement, 1e-6},
-    {"in", RecordQuantity::displacement, 25.4},
-    {"inch", RecordQuantity::displacement, 25.4},
+    {"in inch", RecordQuantity::displacement, 25.4},
     {"ft", RecordQuantity::displacement, 304.8},
     {"mm/s", RecordQuantity::velocity, 1},
     {"cm/s", RecordQuantity::velocity, 10},
@@ -65,24 +56,16 @@ constexpr auto units = std::to_array<RecordUnit>({
     {"um/s", RecordQuantity::velocity, 1e-3},
     {"in/s", RecordQuantity::velocity, 25.4},
     {"mm/s2", RecordQuantity::acceleration, 1},
-    {"mm/s/s", RecordQuantity::acceleration, 1},
-    {"mms-2", RecordQuantity::acceleration, 1},
-    {"cm/s2", RecordQuantity::acceleration, 10},
-    {"gal", RecordQuantity::acceleration, 10},
+    {"cm/s2 Gal", RecordQuantity::acceleration, 10},
     {"m/s2", RecordQuantity::acceleration, 1e3},
-    {"m/s/s", RecordQuantity::acceleration, 1e3},
-    {"ms-2", RecordQuantity::acceleration, 1e3},
     {"in/s2", RecordQuantity::acceleration, 25.4},
     {"ft/s2", RecordQuantity::acceleration, 304.8},
     {"g", RecordQuantity::acceleration, 1e3 * standard_gravity},
     {"mg", RecordQuantity::acceleration, standard_gravity},
-    {"V", RecordQuantity::volts, 1},
+    {"V volt volts", RecordQuantity::volts, 1},
     {"mV", RecordQuantity::volts, 1e-3},
     {"uV", RecordQuantity::volts, 1e-6},
-    {"volt", RecordQuantity::volts, 1},
-    {"volts", RecordQuantity::volts, 1},
-    {"counts", RecordQuantity::counts, 1},
-    {"count", RecordQuantity::counts, 1},
+    {"counts count", RecordQuantity::counts, 1},
     {"FS", RecordQuantity::full_scale, 1},
 });
 
@@ -135,62 +118,42 @@ void split(std::string_view line, char separator, std::vector<std::string_view>&
   while (!cells.empty() && cells.back().empty()) cells.pop_back();
 }
 
-// A day from 1970-01-01 on, of the civil calendar.
-std::int64_t day_of(std::int64_t year, std::int64_t month, std::int64_t day) {
-  year -= month <= 2;
-  const std::int64_t era = (year >= 0 ? year : year - 399) / 400, of_era = year - era * 400;
-  const std::int64_t of_year = (153 * (month + (month > 2 ? -3 : 9)) + 2) / 5 + day - 1;
-  return era * 146097 + of_era * 365 + of_era / 4 - of_era / 100 + of_year - 719468;
-}
 struct Stamp {
-  std::optional<std::int64_t> day;
+  std::optional<std::int64_t> day;  // from 1970-01-01 on
   double seconds = 0;
 };
 // Reads 2024-05-03T10:11:12.5, 03.05.2024 10:11:12,5, 5/3/2024 10:11:12, 10:11:12.5, or a day alone.
 std::optional<Stamp> stamp_of(std::string_view text) {
   Stamp stamp;
-  const auto numbers = [](std::string_view of, char between) {
-    std::vector<std::int64_t> all;
-    for (std::size_t at = 0; at <= of.size();) {
-      const std::size_t end = std::min(of.find(between, at), of.size());
-      const auto number = parse_integer(of.substr(at, end - at));
-      if (!number || *number < 0) return std::vector<std::int64_t>{};
-      all.push_back(*number);
-      at = end + 1;
-    }
-    return all;
-  };
   const std::size_t colon = text.find(':');
   const std::size_t gap = colon == std::string_view::npos ? text.size() : text.find_last_of(" T", colon);
   if (gap != std::string_view::npos) {
     const std::string_view date = trimmed(text.substr(0, gap));
     const std::size_t mark = date.find_first_of("-./");
     if (mark == std::string_view::npos) return std::nullopt;
-    const auto parts = numbers(date, date[mark]);
-    if (parts.size() != 3) return std::nullopt;
-    const bool year_first = parts[0] > 31, month_first = date[mark] == '/';
-    const std::int64_t year = parts[year_first ? 0 : 2], month = parts[month_first && !year_first ? 0 : 1],
-                       day = parts[year_first    ? 2
-                                   : month_first ? 1
-                                                 : 0];
-    if (month < 1 || month > 12 || day < 1 || day > 31 || year > 9999) return std::nullopt;
-    stamp.day = day_of(year, month, day);
+    auto parts = parse_numbers(date, date[mark]);
+    if (!parts || parts->size() != 3) return std::nullopt;
+    if ((*parts)[0] > 31)  // the year comes first
+      std::swap((*parts)[0], (*parts)[2]);
+    else if (date[mark] == '/')
+      std::swap((*parts)[0], (*parts)[1]);
+    const auto [day, month, year] = std::array{(*parts)[0], (*parts)[1], (*parts)[2]};
+    if (!(day >= 1 && day <= 31 && month >= 1 && month <= 12 && year >= 0 && year <= 9999))
+      return std::nullopt;
+    const std::chrono::year_month_day civil{std::chrono::year(int(year)), std::chrono::month(unsigned(month)),
+                                            std::chrono::day(unsigned(day))};
+    if (!civil.ok()) return std::nullopt;
+    stamp.day = std::chrono::sys_days(civil).time_since_epoch().count();
     if (colon == std::string_view::npos) return stamp;
     text.remove_prefix(gap + 1);
   }
   if (text.ends_with('Z')) text.remove_suffix(1);
   std::string clock(trimmed(text));
   std::ranges::replace(clock, ',', '.');
-  const std::size_t first = clock.find(':'), second = clock.find(':', first + 1);
-  const auto hours = parse_integer(std::string_view(clock).substr(0, first));
-  const auto minutes = parse_integer(
-      std::string_view(clock).substr(first + 1, second == std::string::npos ? second : second - first - 1));
-  const auto seconds = second == std::string::npos ? std::optional(0.0)
-                                                   : parse_number(std::string_view(clock).substr(second + 1));
-  if (!hours || !minutes || !seconds || *hours < 0 || *minutes < 0 || *minutes > 59 || !(*seconds >= 0) ||
-      *seconds >= 61)
+  const auto parts = parse_numbers(clock, ':');
+  if (!parts || parts->size() < 2 || parts->size() > 3 || std::ranges::min(*parts) < 0 || (*parts)[1] >= 60)
     return std::nullopt;
-  stamp.seconds = double(3600 * *hours + 60 * *minutes) + *seconds;
+  stamp.seconds = 3600 * (*parts)[0] + 60 * (*parts)[1] + (parts->size() == 3 ? (*parts)[2] : 0);
   return stamp;
 }
 
@@ -222,6 +185,30 @@ Cell cell_of(std::string_view text, char decimal) {
   return {};
 }
 
+// Returns a text of UTF-8, UTF-16 with a byte order mark, or Latin 1 as UTF-8 without one.
+std::string as_utf8(std::string_view bytes) {
+  const bool little = bytes.starts_with("\xff\xfe"), big = bytes.starts_with("\xfe\xff");
+  std::string text;
+  const auto add = [&](std::uint32_t code) {
+    if (code < 0x80) {
+      text += char(code);
+    } else if (code < 0x800) {
+      text += {char(0xc0 | code >> 6), char(0x80 | (code & 0x3f))};
+    } else {
+      text += {char(0xe0 | code >> 12), char(0x80 | (code >> 6 & 0x3f)), char(0x80 | (code & 0x3f))};
+    }
+  };
+  const auto byte = [&](std::size_t at) { return std::uint32_t(static_cast<unsigned char>(bytes[at])); };
+  if (little || big) {
+    for (std::size_t at = 2; at + 1 < bytes.size(); at += 2)
+      add(little ? byte(at) | byte(at + 1) << 8 : byte(at) << 8 | byte(at + 1));
+    return text;
+  }
+  if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
+  if (is_utf8(bytes)) return std::string(bytes);
+  for (std::size_t at = 0; at < bytes.size(); ++at) add(byte(at));
+  return text;
+}
 std::vector<std::string_view> lines_of(std::string_view text) {
   std::vector<std::string_view> lines;
   for (std::size_t at = 0; at < text.size();) {
@@ -300,25 +287,6 @@ void read_as_decimals(const std::vector<std::string_view>& lines, Layout& layout
   layout = {';', ',', 1, {true}};
 }
 
-class Problems {
- public:
-  void add(std::size_t line, const std::string& what) {
-    if (first_.size() < most_) first_.push_back({"line " + std::to_string(line), what});
-    ++count_;
-  }
-  void throw_if_any(const std::string& file) {
-    if (count_ == 0) return;
-    if (count_ > most_)
-      first_.push_back({"", filled("and {} more lines that are not valid", count_ - most_)});
-    throw InputError(file, first_);
-  }
-
- private:
-  static constexpr std::size_t most_ = 10;
-  std::vector<Problem> first_;
-  std::size_t count_ = 0;
-};
-
 // Whether a line is a row of numbers; else, if `problem` is given, sets it to why not.
 bool is_row(const Layout& layout, const std::vector<std::string_view>& cells,
             std::string* problem = nullptr) {
@@ -382,58 +350,6 @@ Heads heads_above(const std::vector<std::string_view>& lines, std::size_t first,
   return heads;
 }
 
-}  // namespace
-
-const RecordUnit* find_unit(std::string_view text) {
-  std::string plain = in_lower_case(trimmed(text, " \t()[]{}"));
-  if (plain.empty() || plain.size() > 20) return nullptr;
-  for (const auto& [what, with] : {std::pair<std::string_view, std::string_view>{"_per_", "/"},
-                                   {"²", "2"},
-                                   {"µ", "u"},
-                                   {"μ", "u"},
-                                   {"⁻", "-"},
-                                   {"**", ""},
-                                   {"^", ""},
-                                   {" ", ""},
-                                   {"*", ""},
-                                   {"·", ""},
-                                   {"sec", "s"}})
-    replace(plain, what, with);
-  const auto* const found = std::ranges::find_if(units, [&](const RecordUnit& unit) {
-    std::string name = in_lower_case(unit.name);
-    replace(name, "sec", "s");
-    return name == plain;
-  });
-  if (found == units.end()) return nullptr;
-  return &*std::ranges::find_if(units, [&](const RecordUnit& unit) {
-    return unit.measure == found->measure && unit.factor == found->factor;
-  });
-}
-
-std::string as_utf8(std::string_view bytes) {
-  const bool little = bytes.starts_with("\xff\xfe"), big = bytes.starts_with("\xfe\xff");
-  std::string text;
-  const auto add = [&](std::uint32_t code) {
-    if (code < 0x80) {
-      text += char(code);
-    } else if (code < 0x800) {
-      text += {char(0xc0 | code >> 6), char(0x80 | (code & 0x3f))};
-    } else {
-      text += {char(0xe0 | code >> 12), char(0x80 | (code >> 6 & 0x3f)), char(0x80 | (code & 0x3f))};
-    }
-  };
-  const auto byte = [&](std::size_t at) { return std::uint32_t(static_cast<unsigned char>(bytes[at])); };
-  if (little || big) {
-    for (std::size_t at = 2; at + 1 < bytes.size(); at += 2)
-      add(little ? byte(at) | byte(at + 1) << 8 : byte(at) << 8 | byte(at + 1));
-    return text;
-  }
-  if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
-  if (is_utf8(bytes)) return std::string(bytes);
-  for (std::size_t at = 0; at < bytes.size(); ++at) add(byte(at));
-  return text;
-}
-
 RecordColumns columns_of_text(const std::string& name, std::string_view text, bool has_rate) {
   const std::vector<std::string_view> lines = lines_of(text);
   std::optional<Layout> layout = layout_of(lines);
@@ -476,7 +392,7 @@ RecordColumns columns_of_text(const std::string& name, std::string_view text, bo
       if (columns.all[j] && !columns.all[j]->unit) columns.all[j]->unit = find_unit(cells[j]);
   }
 
-  Problems problems;
+  RecordProblems problems;
   std::size_t comments = 0;
   std::vector<std::optional<std::int64_t>> first_day(layout->cells);
   for (std::size_t i = first; i < end; ++i) {
@@ -488,7 +404,7 @@ RecordColumns columns_of_text(const std::string& name, std::string_view text, bo
     if (cells.empty()) continue;
     std::string problem;
     if (!is_row(*layout, cells, &problem)) {
-      problems.add(i + 1, problem);
+      problems.add(filled("line {}", i + 1), problem);
       continue;
     }
     columns.lines.push_back(i + 1);
@@ -542,8 +458,8 @@ RecordColumns columns_of_universal_file(const std::string& name, std::string_vie
   const std::vector<std::string_view> lines = lines_of(text);
   RecordColumns columns;
   const auto fail = [&](std::size_t line, const std::string& what) {
-    Problems problems;
-    problems.add(line + 1, what);
+    RecordProblems problems;
+    problems.add(filled("line {}", line + 1), what);
     problems.throw_if_any(name);
   };
   // The field of a line from a column on, of fixed width.
@@ -623,14 +539,14 @@ bool is_sound(std::string_view bytes) {
 }
 
 #ifdef IMPACT_DAMPER_SNDFILE
-RecordColumns columns_of_sound(const std::filesystem::path& file) {
+RecordColumns columns_of_sound(const std::string& file) {
   SF_INFO info{};
   const std::unique_ptr<SNDFILE, int (*)(SNDFILE*)> sound(sf_open(file.c_str(), SFM_READ, &info), sf_close);
-  if (!sound) throw InputError(file.string(), {{"", filled("is no sound file: {}", sf_strerror(nullptr))}});
+  if (!sound) throw InputError(file, {{"", filled("is no sound file: {}", sf_strerror(nullptr))}});
   const auto channels = std::size_t(info.channels);
   std::vector<double> samples(std::size_t(info.frames) * channels);
   if (sf_readf_double(sound.get(), samples.data(), info.frames) != info.frames)
-    throw InputError(file.string(), {{"", "ends before its last sample"}});
+    throw InputError(file, {{"", "ends before its last sample"}});
   RecordColumns columns;
   columns.rate = double(info.samplerate);
   columns.read_as = "sound";
@@ -642,10 +558,48 @@ RecordColumns columns_of_sound(const std::filesystem::path& file) {
   return columns;
 }
 #else
-RecordColumns columns_of_sound(const std::filesystem::path& file) {
-  throw InputError(file.string(),
-                   {{"", "is a sound file, which this program was built without: libsndfile"}});
+RecordColumns columns_of_sound(const std::string& file) {
+  throw InputError(file, {{"", "is a sound file, which this program was built without: libsndfile"}});
 }
 #endif
+
+}  // namespace
+
+const RecordUnit* find_unit(std::string_view text) {
+  std::string plain = in_lower_case(trimmed(text, " \t()[]{}"));
+  if (plain.empty() || plain.size() > 20) return nullptr;
+  if (plain.ends_with("sec")) plain.resize(plain.size() - 2);
+  for (const auto& [what, with] : {std::pair<std::string_view, std::string_view>{"_per_", "/"},
+                                   {"²", "2"},
+                                   {"µ", "u"},
+                                   {"μ", "u"},
+                                   {"⁻", "-"},
+                                   {"**", ""},
+                                   {"^", ""},
+                                   {" ", ""},
+                                   {"*", ""},
+                                   {"·", ""},
+                                   {"/sec", "/s"},
+                                   {"/s/s", "/s2"},
+                                   {"s-2", "/s2"}})
+    replace(plain, what, with);
+  const auto* const found = std::ranges::find_if(units, [&](const RecordUnit& unit) {
+    return std::ranges::any_of(parts_of(unit.names, ' '),
+                               [&](std::string_view name) { return in_lower_case(name) == plain; });
+  });
+  return found == units.end() ? nullptr : &*found;
+}
+
+RecordColumns columns_of(const std::string& name, std::string_view bytes, bool has_rate) {
+  if (is_sound(bytes)) return columns_of_sound(name);
+  if (bytes.starts_with("TDSm"))
+    throw InputError(name,
+                     {{"", "is a TDMS file, which is not read: export it as text, with a head and units"}});
+  const std::string text = as_utf8(bytes);
+  if (text.find('\0') != std::string::npos)
+    throw InputError(name, {{"", "must be text, got bytes that are none"}});
+  return is_universal_file(text) ? columns_of_universal_file(name, text)
+                                 : columns_of_text(name, text, has_rate);
+}
 
 }  // namespace impact_damper

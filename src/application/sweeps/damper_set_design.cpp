@@ -218,8 +218,9 @@ DamperSet best_by_runs(const DamperSetQuestion& question, const Threads& threads
   DamperSet set;
   set.edges = descending_amplitudes(question.upper, question.to, set_bins_in_decade);
   tell("what one damper does alone");
-  // f hardly depends on the mass, and runs with a very light one take long.
-  const double alone_mass = std::clamp(question.mass_ratio / double(question.count), 0.002, 0.05);
+  // f hardly depends on the mass, and runs with a very light one take long; but drag counts by the mass.
+  const double share = question.mass_ratio / double(question.count),
+               alone_mass = question.drag > 0 ? share : std::clamp(share, 0.002, 0.05);
   const auto alone = [&](double restitution) {
     return measured_alone(question, alone_mass, restitution, threads);
   };
@@ -331,8 +332,8 @@ std::vector<Problem> problems_of(const DamperSetQuestion& question) {
   demand("restitution_off", question.restitution_off, 0, 0.4);
   demand("restitution", question.restitution, 0.1 + question.restitution_off, 0.9 - question.restitution_off);
   demand("damping_ratio", question.damping_ratio, 0, 0.1);
-  for (const auto& [field, value] : {std::pair("friction", question.friction), {"weight", question.weight}})
-    demand(field, value, 0, 1e6);
+  demand("friction", question.friction, 0, 1e6);
+  demand("weight", question.weight, 0, 1e6);
   if (question.static_friction != 0)
     demand("static_friction", question.static_friction, question.friction, 1e6);
   demand("drag", question.drag, 0, 1e6 * question.mass_ratio);

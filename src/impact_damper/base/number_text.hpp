@@ -28,6 +28,8 @@ double rounded_to(double value, int digits);
 // sign may precede it, as some instruments write.
 std::optional<double> parse_number(std::string_view text);
 std::optional<std::int64_t> parse_integer(std::string_view text);
+// Reads the numbers A:B:..., or with another character between. Absent unless all are finite numbers.
+std::optional<std::vector<double>> parse_numbers(std::string_view text, char between = ':');
 
 // A text with a place {} for each of these values.
 template <class... Values>

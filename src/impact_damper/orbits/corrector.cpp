@@ -191,7 +191,8 @@ Solved solve(const Equation& equation, const Point& before, const Point& start, 
     now.plane = best.plane;
   }
   if (!(least <= equation.options.tolerance)) return NoOrbit{OrbitEnd::no_convergence, std::move(residuals)};
-  // At a stop so near to no stop, or to the edge of its band, the orbit is known to be on neither side.
+  // At a stop or a release so near to none, or to the edge of its band, the orbit is known to be on neither
+  // side.
   const bool on_edge = best.image.stop_margin && *best.image.stop_margin <= equation.options.tolerance;
   if (best.image.one_sided || on_edge) return NoOrbit{OrbitEnd::no_derivative, std::move(residuals)};
   best.multipliers = multipliers_of(best.image);

@@ -87,7 +87,7 @@ class MassesAlongRun {
 
   // Whether there is an event at rigid walls between the motions n - 1 and n: impacts, or sticking that
   // begins. If so, finds which masses it acts on; x', y' and `wall` are still those before. If not, ends the
-  // sticking that ends there, which changes no speed. With friction or weight stops and releases are events,
+  // sticking that ends there, which changes no speed. With friction stops and releases are events,
   // too, and the first one is the beginning of the run.
   bool comes_to_rigid_event(std::size_t n);
   // Applies that event to x', y, y' and `wall` of all masses.

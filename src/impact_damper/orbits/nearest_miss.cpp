@@ -8,7 +8,6 @@
 #include "impact_damper/motion/joint_contact.hpp"
 #include "impact_damper/motion/motion_by_series.hpp"
 #include "impact_damper/motion/shifted_motion.hpp"
-#include "impact_damper/motion/system.hpp"
 #include "impact_damper/orbits/masses_along_run.hpp"
 
 namespace impact_damper {
@@ -67,12 +66,10 @@ class NearestMiss {
     fluid_.clear();
     number_in_fluid_.assign(now_.masses.size(), 0);
     forces_ = {.weight = of_.weight, .held = joined_mass - 1};
-    double rest = -of_.weight * forces_.held;
     for (std::size_t i = 0; i < now_.masses.size(); ++i) {
       const VariationalCoefficients::OfDamper& its = of_.dampers[i];
       if (now_.masses[i].wall != 0) continue;
       const double friction = its.friction * now_.masses[i].slides;
-      rest += its.nu * friction;
       if (its.drag == 0) {
         forces_.others += its.nu * friction;
         continue;
@@ -82,15 +79,14 @@ class NearestMiss {
       number_in_fluid_[i] = fluid_.size();
     }
     if (!fluid_.empty()) {
-      if (!system_) system_.emplace(of_.scene, of_.scene.dampers[0]);
-      in_fluid_.begin(*system_, motion.begin, now_.x, now_.v, fluid_, forces_);
+      in_fluid_.begin(of_.zeta, of_.force, motion.begin, now_.x, now_.v, fluid_, forces_);
       return follow(in_fluid_, motion.duration);
     }
     const Forcing<double> force{of_.force.amplitude / joined_mass, of_.force.frequency};
     std::optional<ForcedOscillator> joined;
     if (joined_mass != 1) joined.emplace(of_.zeta / joined_mass, 1 / joined_mass, of_.force);
     ShiftedMotion<double, Forcing<double>> shifted(joined ? *joined : free_, force, motion.begin, now_.x,
-                                                   now_.v, rest);
+                                                   now_.v, forces_.others - of_.weight * forces_.held);
     follow(shifted, motion.duration);
   }
   // moved_by: a ShiftedMotion, or a MotionBySeries.
@@ -217,7 +213,6 @@ class NearestMiss {
   const RecordedRun& run_;
   MassesAlongRun now_;
   ForcedOscillator free_;
-  std::optional<System<double>> system_;  // made when it is first asked for
   MotionBySeries<double, Forcing<double>> in_fluid_;
   std::vector<PushedWall<double>> fluid_;  // the masses that slide in a fluid
   std::vector<std::size_t> number_in_fluid_;

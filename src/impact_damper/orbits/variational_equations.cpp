@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
-#include <variant>
 
 #include "impact_damper/math/dense.hpp"
 #include "impact_damper/motion/contact.hpp"
@@ -46,14 +44,14 @@ bool is_lost(double loss) { return loss > 36.0 * most_pieces; }
 // (M13.33).
 class JointPropagator {
  public:
-  // in_contact: indices of these masses. mass: of the primary mass and all that sticks to it. with_force: for
+  // coupled: indices of these masses. mass: of the primary mass and all that sticks to it. with_force: for
   // changes of the force, too.
-  JointPropagator(const VariationalCoefficients& of, std::span<const std::size_t> in_contact, double mass,
+  JointPropagator(const VariationalCoefficients& of, std::span<const std::size_t> coupled, double mass,
                   double duration, bool with_force)
-      : in_contact_(in_contact), mass_(mass) {
-    const std::size_t n = 2 + 2 * in_contact.size() + (with_force ? 4 : 0);
+      : coupled_(coupled), mass_(mass) {
+    const std::size_t n = 2 + 2 * coupled.size() + (with_force ? 4 : 0);
     double rate = with_force ? of.force.frequency : 0, all_k = 0, most_k = 0;
-    for (const std::size_t i : in_contact) {
+    for (const std::size_t i : coupled) {
       const OfDamper& each = of.dampers[i];
       all_k += each.nu * each.stiffness;
       most_k = std::max(most_k, each.stiffness);
@@ -76,32 +74,32 @@ class JointPropagator {
             -force.amplitude * sin};
   }
 
-  // Carries x, x', and y and y' of the masses in contact. `force`: (g, h, a, b) at the beginning.
+  // Carries x, x', and y and y' of the coupled masses. `force`: (g, h, a, b) at the beginning.
   void carry(ChangeOfState& s, const std::array<double, 4>& force) const {
     Vector from(matrix_.size());
     from[0] = s[0], from[1] = s[1];
-    const std::size_t n = 2 + 2 * in_contact_.size();
-    for (std::size_t k = 0; k < in_contact_.size(); ++k) {
-      from[2 + 2 * k] = s[index_of_y(in_contact_[k])];
-      from[3 + 2 * k] = s[index_of_w(in_contact_[k])];
+    const std::size_t n = 2 + 2 * coupled_.size();
+    for (std::size_t k = 0; k < coupled_.size(); ++k) {
+      from[2 + 2 * k] = s[index_of_y(coupled_[k])];
+      from[3 + 2 * k] = s[index_of_w(coupled_[k])];
     }
     if (from.size() > n) std::copy(force.begin(), force.end(), from.begin() + std::ptrdiff_t(n));
     const Vector to = product(matrix_, from);
     s[0] = to[0], s[1] = to[1];
-    for (std::size_t k = 0; k < in_contact_.size(); ++k) {
-      s[index_of_y(in_contact_[k])] = to[2 + 2 * k];
-      s[index_of_w(in_contact_[k])] = to[3 + 2 * k];
+    for (std::size_t k = 0; k < coupled_.size(); ++k) {
+      s[index_of_y(coupled_[k])] = to[2 + 2 * k];
+      s[index_of_w(coupled_[k])] = to[3 + 2 * k];
     }
   }
 
  private:
   // The right-hand sides of the variational equations (M13.27).
   void derive(const VariationalCoefficients& of, const Vector& s, Vector& rates) const {
-    const std::size_t n = 2 + 2 * in_contact_.size();
+    const std::size_t n = 2 + 2 * coupled_.size();
     double a = -2 * of.zeta * s[1] - s[0];
     if (s.size() > n) a += s[n];
-    for (std::size_t k = 0; k < in_contact_.size(); ++k) {
-      const OfDamper& each = of.dampers[in_contact_[k]];
+    for (std::size_t k = 0; k < coupled_.size(); ++k) {
+      const OfDamper& each = of.dampers[coupled_[k]];
       const double push = (each.damping + each.drag) * s[3 + 2 * k] + each.stiffness * s[2 + 2 * k];
       a += each.nu * push;
       rates[2 + 2 * k] = s[3 + 2 * k];
@@ -109,7 +107,7 @@ class JointPropagator {
     }
     a /= mass_;
     rates[0] = s[1], rates[1] = a;
-    for (std::size_t k = 0; k < in_contact_.size(); ++k) rates[3 + 2 * k] -= a;
+    for (std::size_t k = 0; k < coupled_.size(); ++k) rates[3 + 2 * k] -= a;
     if (s.size() == n) return;
     const double omega = of.force.frequency, *g = s.data() + n;
     rates[n] = omega * g[1] + g[2];
@@ -118,9 +116,9 @@ class JointPropagator {
     rates[n + 3] = -omega * g[2];
   }
 
-  std::span<const std::size_t> in_contact_;
+  std::span<const std::size_t> coupled_;
   double mass_;
-  // Rows and columns of x, x', q and q' of each mass in contact, and (g, h, a, b) of (M13.27).
+  // Rows and columns of x, x', q and q' of each coupled mass, and (g, h, a, b) of (M13.27).
   Matrix matrix_;
 };
 

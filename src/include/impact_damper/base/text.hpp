@@ -32,6 +32,8 @@ struct FileKind {
 };
 
 bool is_utf8(std::string_view text);
+// Returns the parts of `text` between these characters, at least one: of "a,,b" "a", "" and "b".
+std::vector<std::string_view> parts_of(std::string_view text, char between = ',');
 // Returns `text` on one line of UTF-8, with a question mark for each byte that is no character and each
 // control character. If it is longer than `most` characters: its first `most`, then "...".
 std::string cut(std::string_view text, std::size_t most = 60);

@@ -56,7 +56,7 @@ class EngineWithComponents : protected Walls {
     Real friction, holds, drag;     // phi, phi_s and d
     Real stiffness{0}, damping{0};  // K and c of (M18.1); a rigid wall has none
     bool still = false;             // held by friction, or on a rigid wall
-    bool stays = false;             // held before the present event as well
+    bool stays = false;             // held before the present event as well (the exact engine's)
     Real slides{0};                 // the sign of y' where friction acts, else 0
     std::size_t in_series{0};       // 1 + its index in pushed_, 0 where it is not there
     WallContact<Real> contact{};    // with a compliant wall
@@ -158,7 +158,7 @@ class EngineWithComponents : protected Walls {
     }
     if (!pushed_.empty()) {
       if (!series_) series_.emplace();
-      series_->begin(system_, tracker_.now(), x_, v_, pushed_, forces_);
+      series_->begin(system_.zeta, system_.forcing, tracker_.now(), x_, v_, pushed_, forces_);
       return use(*series_);
     }
     const Real all = mass(), rest = forces_.others - forces_.weight * forces_.held;

@@ -51,8 +51,6 @@ class ExactWithComponents
   Outcome run() { return Base::run_to_end(); }
 
  private:
-  bool rests_on_wall(std::size_t i) const { return masses_.u[i] == 0 && masses_.u1[i] == 0; }
-
   Event follow(bool& stopped_by_rounding) {
     return is_alone() ? push_alone(stopped_by_rounding) : Base::follow_motion(stopped_by_rounding);
   }
@@ -174,7 +172,7 @@ class ExactWithComponents
         Base::sum_up_held();
     }
     for (std::size_t i = 0; i < masses_.size(); ++i) {
-      if (!rests_on_wall(i)) continue;
+      if (!masses_.rests(i)) continue;
       const Mass& mass = each_[i];
       const Real direction = mass.still         ? Real(0)
                              : mass.slides != 0 ? mass.slides

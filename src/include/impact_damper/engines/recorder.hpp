@@ -34,7 +34,7 @@ struct MotionChain {
     Wall wall;
     std::int32_t damper;
   };
-  // With friction or weight: of each damper, when the run begins and after each event (observer.hpp).
+  // With friction, weight or drag: of each damper, when the run begins and after each event (observer.hpp).
   struct Settled {
     std::size_t motions;
     std::int32_t damper;

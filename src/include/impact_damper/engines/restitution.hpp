@@ -30,7 +30,7 @@
 
 namespace impact_damper {
 
-// Runs a scene without a list of dampers, friction and weight.
+// Runs a scene without a list of dampers, friction, weight and drag.
 template <Scalar Real, RunObserver Observer>
 Outcome run_restitution(const Checked& run, Observer& observer) {
   require_no_components(run.scene());

@@ -195,7 +195,7 @@ class RestitutionOfDampers : EngineWithRigidWalls<Real, Force, Observer> {
   ChatteringLimit<Real, Force> chattering_;
 };
 
-// Runs a scene with a list of dampers, without friction and weight.
+// Runs a scene with a list of dampers, without friction, weight and drag.
 template <Scalar Real, DampersObserver Observer>
 Outcome run_restitution_dampers(const Checked& run, Observer& observer) {
   require_no_components(run.scene());

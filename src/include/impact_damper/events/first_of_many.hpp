@@ -32,6 +32,8 @@ struct Watch {
   Real begin{0};  // before this time the function is known to be positive
   int order = 0;
   Real noise{0}, slope_noise{0};
+  // t^order.
+  Real power_of(const Real& t) const { return order == 2 ? Real(t * t) : order == 1 ? t : Real(1); }
   // Set by the search: its least step while the value is not positive, doubled while the value stays so.
   Real wait{0};
   // Set by the prediction: the function at time 0, with its third derivative, and when it may fall.
@@ -74,8 +76,7 @@ std::optional<Root<Real>> first_of_many(std::vector<Watched>& watched, At&& at, 
       }
       const LocalEnclosure<Real> function = enclose(now, time, each);
       Jet<Real> jet = function.whole;
-      const Real power = each.order > 1 ? time : Real(1),
-                 noise = each.noise * (each.order > 0 ? power * time : power);
+      const Real power = each.order > 1 ? time : Real(1), noise = each.noise * each.power_of(time);
       if (each.order > 0 && jet.g > noise) each.noise = each.slope_noise = 0;
       const bool departed = jet.g <= 0;
       const Real wait = each.wait;
@@ -151,8 +152,7 @@ std::optional<ProvenFirst<Real>> predict_first(std::vector<Watched>& watched, St
       if (i == but) continue;
       const Watched& each = watched[i];
       const Jet<Real> end = jet(now, time, each);
-      const Real power = each.order == 2 ? Real(time * time) : each.order == 1 ? time : Real(1);
-      if (!(end.g > each.noise * power) ||
+      if (!(end.g > each.noise * each.power_of(time)) ||
           !stays_positive_until(each,
                                 {time + by, end.g + by * (end.g1 + by * end.g2 / 2), end.g1 + by * end.g2}))
         return false;

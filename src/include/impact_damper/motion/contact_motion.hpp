@@ -120,7 +120,7 @@ class ContactMotion {
     return slow.bound(order, t) + fast.bound(order, t);
   }
 
-  // The same of q for an order up to 5.
+  // bound_of_q() for an order up to 5, which takes one more derivative than others need.
   Real high_bound_of_q(std::size_t order, const Real& t) const {
     const auto bound = [&](const ContactState<Real>& now, const Oscillator<Real>& oscillator,
                            const ContactState<Real>& drive) {

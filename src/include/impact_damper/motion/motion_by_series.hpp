@@ -13,7 +13,6 @@
 #include "impact_damper/motion/joint_contact.hpp"
 #include "impact_damper/motion/lead.hpp"
 #include "impact_damper/motion/state.hpp"
-#include "impact_damper/motion/system.hpp"
 
 namespace impact_damper {
 
@@ -24,9 +23,9 @@ class MotionBySeries {
  public:
   // Begins a piece. pushed: the masses of the series; one that slides in a fluid has K = 0, and q = 0 now.
   // forces must outlive the piece.
-  void begin(const System<Real, Force>& system, const Real& time, const Real& x, const Real& v,
+  void begin(const Real& zeta, const Force& forcing, const Real& time, const Real& x, const Real& v,
              const std::vector<PushedWall<Real>>& pushed, const ConstantForces<Real>& forces) {
-    piece_.set_walls(system.zeta, system.forcing, pushed);
+    piece_.set_walls(zeta, forcing, pushed);
     piece_.set_forces(forces);
     piece_.begin(time, x, v, pushed);
     all_.assign(1, Part{piece_.of_x()});
