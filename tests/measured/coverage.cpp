@@ -39,7 +39,7 @@ int main(int count, char** words) {
     row.truth.damper().clearance = between(7, 14);
     row.truth.initial_displacement = between(40, 70);
     const Reduction reduction = reduced(
-        "made", made::measured(row.truth, {.noise = 0.05, .offset = 1, .drift = 1, .seed = unsigned(i)}));
+        "made", made::measured(row.truth, {.noise = 0.05, .offset = 1, .drift = 1, .seed = unsigned(i)}), 3);
     FitOptions options;
     options.threads = 1;
     row.result = fit_decay(made::mast(), Restitution{}, reduction, loss_bins(reduction), options,

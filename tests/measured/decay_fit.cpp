@@ -26,7 +26,7 @@ const MeasuredRecord& record() {
 DecayFit fit_of(const MeasuredRecord& record, Threads threads = {},
                 std::vector<FitParameter> parameters = FitOptions{}.parameters,
                 std::uint64_t seed = FitOptions{}.seed) {
-  const Reduction reduction = reduced("made", record);
+  const Reduction reduction = reduced("made", record, 3);
   FitOptions options;
   options.threads = threads;
   options.seed = seed;
@@ -77,7 +77,7 @@ TEST_CASE("a region that is near the record by chance does not end the search") 
     record.time.push_back(run.history->time[i] * time_unit);
     record.value.push_back(std::round(2.8e3 * run.history->x[i]) / 1e3);
   }
-  const Reduction reduction = reduced("made", record);
+  const Reduction reduction = reduced("made", record, 3);
   const FitResult result =
       fit_decay(scene, Restitution{}, reduction, loss_bins(reduction), {}, [](const std::string&) {});
   REQUIRE(result.fit);
@@ -137,7 +137,7 @@ TEST_CASE("a record of large amplitudes alone does not tell restitution and clea
 TEST_CASE("losses that no damper of the searched range has are told from those that one has") {
   // The amplitude falls faster at first and slower later on than that of any impact damper.
   MeasuredRecord other = record();
-  const Reduction before = reduced("made", record());
+  const Reduction before = reduced("made", record(), 3);
   for (std::size_t i = 0; i < other.time.size(); ++i) {
     const double part = (other.time[i] - other.time[0]) / 8;
     other.value[i] *= std::exp(-0.6 * part * part * std::exp(-part));
@@ -157,7 +157,7 @@ TEST_CASE(
   const Record samples{.half_cycles = false,
                        .history = {{0, *scene.until_time, made::samples_of(scene, instrument)}}};
   const MeasuredRecord record = made::measured(truth, simulate(scene, Exact{}, samples), instrument);
-  const Reduction reduction = reduced("made", record);
+  const Reduction reduction = reduced("made", record, 3);
   const auto fitted = [&](double friction, double mass, FitParameter second) {
     SceneInUnits given = made::mast();
     given.damper().friction_coefficient = friction, given.damper().secondary_mass = mass;

@@ -28,10 +28,9 @@ inline SceneInUnits mast() {
 
 struct Instrument {
   double samples_per_cycle = 50;
-  double noise = 0;              // standard deviation, mm or mm/s^2
+  double noise = 0;              // standard deviation, mm
   double offset = 0, drift = 0;  // mm, and mm over the record, half of it as a slow wave
   double time_factor = 1;        // of a wrong sampling rate
-  MeasuredQuantity quantity = MeasuredQuantity::displacement;
   unsigned seed = 1;
 };
 
@@ -41,21 +40,15 @@ inline int samples_of(const Scene& scene, const Instrument& instrument) {
 // The record of a run of this scene that has a history of so many samples.
 inline MeasuredRecord measured(const SceneInUnits& in_units, const Run& run, const Instrument& instrument) {
   const Scales scales = scales_of(in_units);
-  const Scene scene = dimensionless(in_units);
   std::mt19937 random(instrument.seed);
   std::normal_distribution<double> normal;
   MeasuredRecord record;
-  record.quantity = instrument.quantity;
   const History& history = *run.history;
   for (std::size_t i = 0; i < history.time.size(); ++i) {
     const double part = history.time[i] / history.time.back();
-    // Between impacts; a stuck mass is carried along.
-    const double acceleration = -(history.x[i] + 2 * scene.damping_ratio * history.v[i]) * scales.length /
-                                (scales.of(Dimension::time) * scales.of(Dimension::time));
-    double value =
-        instrument.quantity == MeasuredQuantity::displacement ? history.x[i] * scales.length : acceleration;
-    value += instrument.offset + instrument.drift / 2 * (part + std::sin(2 * std::numbers::pi * part) / 2) +
-             instrument.noise * normal(random);
+    const double value = history.x[i] * scales.length + instrument.offset +
+                         instrument.drift / 2 * (part + std::sin(2 * std::numbers::pi * part) / 2) +
+                         instrument.noise * normal(random);
     record.time.push_back(history.time[i] * scales.of(Dimension::time) * instrument.time_factor);
     record.value.push_back(value);
   }

@@ -14,15 +14,16 @@ NUMBERS = {
     "mass": 40.0, "stiffness": 16000.0, "secondary_mass": 1.6,  # kg, N/m, kg: as in mast.json
     "clearance": 11.5, "restitution": 0.52, "damping_ratio": 0.003,  # mm: what mast.json does not know
     "initial_displacement": 58.0, "seconds": 24.0, "samples_per_second": 100.0,
-    "noise": 0.08, "offset": 1.5, "drift": 1.0,  # mm
-    "resolution": 0.01, "range": 55.0,  # mm: the transducer's steps, and where it clips
+    "derivative": 0,  # of the displacement that is recorded: 2 is an acceleration, by its mean between two samples
+    "noise": 0.08, "offset": 1.5, "drift": 1.0,  # mm, mm/s or mm/s^2, as all that follows
+    "resolution": 0.01, "range": 55.0,  # the transducer's steps, and where it clips
     "gap_from": 9.0, "gap_to": 9.35,  # s, without samples
     "time_factor": 1.0, "seed": 1,
 }
 
 
 def decay(n):
-    """Displacement in mm at each sample."""
+    """Displacement in mm and velocity in mm/s at each sample."""
     nu, zeta, e = n["secondary_mass"] / n["mass"], n["damping_ratio"], n["restitution"]
     unit = math.sqrt(n["mass"] / n["stiffness"])
     step = 0.004
@@ -79,7 +80,7 @@ def decay(n):
             push = -rates(state)[1] * wall  # of the relative acceleration, into the wall
             if push > 0 and abs(w) < 1e-3 * push:
                 state, stuck = (x, v + nu * w / (1 + nu), state[2], 0.0), wall
-        samples.append(state[0] * n["clearance"])
+        samples.append((state[0] * n["clearance"], state[1] * n["clearance"] / unit))
     return samples
 
 
@@ -89,14 +90,18 @@ def main():
         key, value = word.split("=")
         n[key] = type(NUMBERS[key])(value)
     noise = random.Random(n["seed"])
-    samples = decay(n)
-    print("t_s,x_mm")
+    rate, derivative = n["samples_per_second"], n["derivative"]
+    samples, begin = [each[min(derivative, 1)] for each in decay(n)], 0
+    if derivative == 2:
+        samples, begin = [(after - before) * rate for before, after in zip(samples, samples[1:])], 0.5
+    print("t_s," + ("x_mm", "v_mm_per_s", "a_mm_per_s2")[derivative])
     for i, x in enumerate(samples):
-        t = i / n["samples_per_second"]
+        t = (i + begin) / rate
         x += n["offset"] + n["drift"] * t / n["seconds"] + noise.gauss(0, n["noise"])
         x = max(-n["range"], min(n["range"], round(x / n["resolution"]) * n["resolution"]))
         if not n["gap_from"] <= t < n["gap_to"]:
-            print(f"{t:.2f},{x:.2f}" if n["time_factor"] == 1 else f"{t * n['time_factor']:.6f},{x:.2f}")
+            t *= n["time_factor"]
+            print(f"{t:.2f},{x:.2f}" if rate == 100 and n["time_factor"] == 1 else f"{t:.6f},{x:.2f}")
 
 
 if __name__ == "__main__":

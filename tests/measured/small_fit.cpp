@@ -83,7 +83,7 @@ TEST_CASE("the statistic of a simulated decay of known loss is that loss") {
 }
 
 TEST_CASE("a small fit finds what a record was made with, for any number of threads") {
-  const Reduction reduction = reduced("made", made::measured(heavy(), {.noise = 0.02, .seed = 8}));
+  const Reduction reduction = reduced("made", made::measured(heavy(), {.noise = 0.02, .seed = 8}), 3);
   const std::vector<LossBin> bins = loss_bins(reduction);
   SceneInUnits scene = heavy();
   scene.damper().secondary_mass = 3, scene.damper().restitution = 0.6;

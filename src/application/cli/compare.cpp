@@ -40,7 +40,6 @@ std::string percent_of(double share) { return text_of(100 * share, 2) + " %"; }
 
 std::string summary_of(const Comparison& c) {
   const Reduction& r = c.reduction;
-  const std::string_view unit = unit_of(c.record.quantity);
   std::string text =
       filled("{}: {}, {} samples in {} s, {} Hz\n", fs::path(c.record_name).filename().string(),
              name_of(c.record.quantity), r.samples, text_of(r.duration), text_of(r.sampling_rate, 4)) +
@@ -49,8 +48,8 @@ std::string summary_of(const Comparison& c) {
              text_of(r.frequency, 4), text_of(r.time.front()), text_of(r.time.back()),
              text_of(r.amplitude.front()), text_of(r.amplitude.back()),
              r.ends_in_noise ? ", below which noise is too strong" : "") +
-      filled("  noise {} {}, offset {} {}, drift {} {}; left out: ", text_of(r.noise), unit,
-             text_of(r.offset), unit, text_of(r.drift), unit) +
+      filled("  noise {} mm, offset {} mm, drift {} mm; left out: ", text_of(r.noise), text_of(r.offset),
+             text_of(r.drift)) +
       filled("{} half cycles clipped or flat, {} at its ends or with samples missing, {} unclear\n",
              r.clipped, r.in_gaps, r.unclear) +
       filled("  the scene: {} to {} Hz\n", text_of(c.lowest_frequency, 4), text_of(c.highest_frequency, 4));

@@ -198,12 +198,12 @@ Comparison compared(const std::string& record_name, const MeasuredRecord& record
   require_none(problems);
   Comparison c;
   c.record_name = record_name, c.scene_name = scene_name, c.record = record, c.engine = engine;
-  c.reduction = reduced(record_name, record);
+  c.highest_frequency = scales_of(scene).of(Dimension::frequency);
+  c.reduction = reduced(record_name, record, c.highest_frequency);
   HalfCycles rows;
   rows.peak_time = c.reduction.time, rows.amplitude = c.reduction.amplitude;
   c.loss = loss_of(std::move(rows), 2 * half_turn<double>() * c.reduction.frequency);
   c.bins = loss_bins(c.reduction);
-  c.highest_frequency = scales_of(scene).of(Dimension::frequency);
   c.lowest_frequency = c.highest_frequency / std::sqrt(1 + dimensionless(scene).damper().mass_ratio);
   c.remarks = c.reduction.outside;
   tell("simulating the scene");
@@ -225,8 +225,9 @@ Comparison compared(const std::string& record_name, const MeasuredRecord& record
   remark_on_components(c, options.fit);
   if (record.quantity == MeasuredQuantity::acceleration)
     c.remarks.push_back(
-        filled("Displacements are accelerations divided by the square of the local angular frequency; they "
-               "may err by {} % (the mass ratio){}.",
+        filled("The acceleration is integrated twice: impacts count by their area. Where the record lacks "
+               "them, because they lie between samples or beyond the sensor's range, amplitudes may err by "
+               "{} % (the mass ratio){}.",
                text_of(100 * dimensionless(scene).damper().mass_ratio),
                c.fit ? ", for which the intervals do not allow" : ""));
   return c;

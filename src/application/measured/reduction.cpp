@@ -40,6 +40,12 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
+std::vector<double> steps_of(const std::vector<double>& time) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < time.size(); ++i) steps.push_back(time[i] - time[i - 1]);
+  return steps;
+}
+
 // Returns the running median of five samples. A spike of an impact or a wrong sample is no extreme of it.
 std::vector<double> without_spikes(const std::vector<double>& value) {
   std::vector<double> smooth = value;
@@ -408,45 +414,101 @@ std::optional<MeasuredRecord> without_rows(const MeasuredRecord& record, double 
   return kept;
 }
 
-}  // namespace
+// --- Displacements of velocities and accelerations --------------------------------------------------------
 
-Reduction reduced(const std::string& name, const MeasuredRecord& record) {
+// Returns means of the samples in intervals of `step` s; the record itself if it has less than two in each.
+MeasuredRecord in_blocks(const MeasuredRecord& record, double step) {
+  if (!(2 * median_of(steps_of(record.time)) < step)) return record;
+  MeasuredRecord means;
+  means.quantity = record.quantity;
+  const double begin = record.time.front();
+  const auto block_of = [&](std::size_t i) { return std::floor((record.time[i] - begin) / step); };
+  for (std::size_t i = 0, next = 0; i < record.time.size(); i = next) {
+    double time = 0, value = 0;
+    for (; next < record.time.size() && block_of(next) == block_of(i); ++next)
+      time += record.time[next] - begin, value += record.value[next];
+    means.time.push_back(begin + time / double(next - i));
+    means.value.push_back(value / double(next - i));
+  }
+  return means;
+}
+
+// Returns the displacement less its weighted mean over two periods (M16.4), at all samples within a period of
+// which none is missing.
+MeasuredRecord integrated(const MeasuredRecord& record, double period) {
+  constexpr double longest_step = 2.5;  // divided by the median: beyond it samples are missing
+  const std::vector<double>&time = record.time, &value = record.value;
+  const double step = median_of(steps_of(time));
+  const bool twice = record.quantity == MeasuredQuantity::acceleration;
+  MeasuredRecord result;
+  std::size_t whole = 0, looked_at = 0;  // from `whole` up to `looked_at` no samples are missing
+  for (std::size_t j = 1; j + 1 < time.size(); ++j) {
+    const auto [first, end] = range_about(time, time[j], period);
+    for (; looked_at < end && looked_at + 1 < time.size(); ++looked_at)
+      if (time[looked_at + 1] - time[looked_at] > longest_step * step) whole = looked_at + 1;
+    if (first == 0 || end == time.size() || whole >= first) continue;
+    double sum = 0;
+    for (std::size_t i = first; i < end; ++i) {
+      const double t = time[i] - time[j], part = 1 - std::abs(t) / period;
+      const double once = t == 0 ? 0 : std::copysign(part * part / 2, -t);
+      sum += (twice ? -part * part * part * period / 6 : once) * value[i] * (time[i + 1] - time[i - 1]) / 2;
+    }
+    const double around = (time[j + 1] - time[j - 1]) / 2,
+                 bend = twice ? value[j] : (value[j - 1] - value[j + 1]) / (2 * around);
+    result.time.push_back(time[j]);
+    result.value.push_back(sum + around * around / 12 * bend);
+  }
+  return result;
+}
+
+std::string as_missing(std::size_t samples) {
+  return filled("{} samples have the value of the one before them for so long that they count as missing.",
+                samples);
+}
+
+constexpr double above_noise = 5;
+std::vector<Extreme> extremes_above_noise(const MeasuredRecord& record) {
+  return extremes_of(record.time, without_spikes(record.value), above_noise * rough_noise(record.value));
+}
+void require_half_cycles(const std::string& name, std::size_t count, const std::string& others = "") {
+  if (count < least_half_cycles)
+    reject(name, filled("must hold a free decay of at least {} half cycles above the noise, got {}{}",
+                        least_half_cycles, count, others));
+}
+std::vector<double> half_cycles_between(const std::vector<Extreme>& extremes,
+                                        const std::vector<double>& time) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < extremes.size(); ++i)
+    intervals.push_back(time[extremes[i].index] - time[extremes[i - 1].index]);
+  return intervals;
+}
+
+// Reduces displacements. known_error: the standard error of an amplitude by the noise, if it does not follow
+// from the samples about a peak.
+Reduction reduced_displacement(const std::string& name, const MeasuredRecord& record,
+                               std::optional<double> known_error) {
   Reduction result;
   const std::vector<double>&time = record.time, &value = record.value;
   require_samples(name, record);
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < time.size(); ++i) steps.push_back(time[i] - time[i - 1]);
-  const double step = median_of(std::move(steps));
+  const double step = median_of(steps_of(time));
   result.samples = std::int64_t(time.size());
   result.duration = time.back() - time.front();
   result.sampling_rate = 1 / step;
 
-  constexpr double above_noise = 5;
-  const std::vector<Extreme> extremes =
-      extremes_of(time, without_spikes(value), above_noise * rough_noise(value));
-  const auto require_half_cycles = [&](std::size_t count, const std::string& others) {
-    if (count < least_half_cycles)
-      reject(name, filled("must hold a free decay of at least {} half cycles above the noise, got {}{}",
-                          least_half_cycles, count, others));
-  };
-  require_half_cycles(extremes.size(), "");
+  const std::vector<Extreme> extremes = extremes_above_noise(record);
+  require_half_cycles(name, extremes.size());
 
   // A half cycle lasts as long as the median of those around it, which a gap or a false extreme hardly
   // changes.
   constexpr std::size_t around = 5;
-  std::vector<double> intervals;
-  for (std::size_t i = 1; i < extremes.size(); ++i)
-    intervals.push_back(time[extremes[i].index] - time[extremes[i - 1].index]);
+  const std::vector<double> intervals = half_cycles_between(extremes, time);
   const auto local = [&](std::size_t i) {
     const std::size_t first = i < around ? 0 : i - around, last = std::min(i + around, intervals.size());
     return median_of({intervals.begin() + std::ptrdiff_t(first), intervals.begin() + std::ptrdiff_t(last)});
   };
   if (const auto kept = without_rows(record, median_of(intervals), time[extremes.back().index])) {
-    result = reduced(name, *kept);
-    result.outside.push_back(
-        filled("{} samples have the value of the one before them for so long that they "
-               "count as missing.",
-               time.size() - kept->time.size()));
+    result = reduced_displacement(name, *kept, known_error);
+    result.outside.push_back(as_missing(time.size() - kept->time.size()));
     return result;
   }
   const double least_per_cycle = double(least_window) * half_turn<double>() / half_window;
@@ -473,7 +535,7 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record) {
   std::vector<double> variances;
   for (const Candidate& each : all)
     if (each.kind == Kind::good) variances.push_back(each.fit.variance);
-  result.noise = std::sqrt(median_of(std::move(variances)));
+  result.noise = known_error.value_or(std::sqrt(median_of(std::move(variances))));
 
   for (std::size_t i = 0; i < all.size(); ++i) {
     Candidate& each = all[i];
@@ -519,7 +581,7 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record) {
     result.in_gaps += each.kind == Kind::in_gap;
     result.unclear += each.kind == Kind::unclear;
   }
-  require_half_cycles(good.size(),
+  require_half_cycles(name, good.size(),
                       filled(" ({} clipped or flat, {} at its ends or with samples missing, {} unclear)",
                              result.clipped, result.in_gaps, result.unclear));
   const double turns = double(good.back()->number - good.front()->number);
@@ -537,30 +599,50 @@ Reduction reduced(const std::string& name, const MeasuredRecord& record) {
     const Candidate& each = *good[i];
     lowest = std::min(lowest, each.middle), highest = std::max(highest, each.middle);
     result.offset += each.middle / double(good.size());
-    double factor = 1;
-    if (record.quantity != MeasuredQuantity::displacement) {
-      const Candidate &first = *good[i < around ? 0 : i - around],
-                      &last = *good[std::min(i + around, good.size() - 1)];
-      const double omega =
-          half_turn<double>() * double(last.number - first.number) / (last.fit.time - first.fit.time);
-      factor = 1 / (record.quantity == MeasuredQuantity::velocity ? omega : omega * omega);  // (M16.4)
-    }
     result.time.push_back(each.fit.time);
-    result.amplitude.push_back(each.amplitude * factor);
-    result.error.push_back(result.noise * each.fit.value_factor * factor);  // (M16.3)
+    result.amplitude.push_back(each.amplitude);
+    result.error.push_back(known_error.value_or(result.noise * each.fit.value_factor));  // (M16.3)
     result.half_cycle.push_back(each.number);
   }
   result.drift = highest - lowest;
   if (result.outside.empty()) return result;
-  const double omega = 2 * half_turn<double>() * result.frequency;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].kind != Kind::good || (i >= used.first && i < used.end)) continue;
     result.other_time.push_back(all[i].fit.time);
-    const double unit = record.quantity == MeasuredQuantity::displacement ? 1
-                        : record.quantity == MeasuredQuantity::velocity   ? omega
-                                                                          : omega * omega;
-    result.other_amplitude.push_back(all[i].amplitude / unit);
+    result.other_amplitude.push_back(all[i].amplitude);
   }
+  return result;
+}
+
+}  // namespace
+
+Reduction reduced(const std::string& name, const MeasuredRecord& record, double frequency) {
+  require_samples(name, record);
+  if (record.quantity == MeasuredQuantity::displacement) return reduced_displacement(name, record, {});
+  constexpr double blocks_in_period = 64, close = 0.01;
+  constexpr int most_rounds = 6;
+  double period = 1 / frequency;
+  const auto whole = without_rows(record, period / 2, record.time.back());
+  MeasuredRecord blocks, displacement;
+  for (int round = 0; round < most_rounds; ++round) {
+    blocks = in_blocks(whole ? *whole : record, period / blocks_in_period);
+    displacement = integrated(blocks, period);
+    const std::vector<Extreme> extremes = extremes_above_noise(displacement);
+    require_half_cycles(name, extremes.size());
+    const double found = 2 * median_of(half_cycles_between(extremes, displacement.time));
+    if (std::abs(found / period - 1) < close) break;
+    period = found;
+  }
+  const double step = median_of(steps_of(blocks.time)), noise = rough_noise(blocks.value);
+  // (M16.10) divided by the noise.
+  const double factor = record.quantity == MeasuredQuantity::velocity ? std::sqrt(period / 10)
+                                                                      : std::sqrt(period / 126) * period;
+  Reduction result = reduced_displacement(name, displacement, noise * std::sqrt(step) * factor);
+  const std::vector<double>& time = record.time;
+  result.samples = std::int64_t(time.size());
+  result.duration = time.back() - time.front();
+  result.sampling_rate = 1 / median_of(steps_of(time));
+  if (whole) result.outside.push_back(as_missing(time.size() - whole->time.size()));
   return result;
 }
 

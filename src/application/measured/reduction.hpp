@@ -23,8 +23,9 @@ struct Reduction {
   std::vector<double> error;             // standard error of `amplitude` by the noise, mm
   std::vector<std::int64_t> half_cycle;  // number of the half cycle from 0; those left out count, too
   double frequency = 0;                  // Hz, mean over these half cycles
-  double noise = 0;     // standard deviation of a sample about the fitted sinusoids, in the record's unit
-  double offset = 0;    // mean of the middle line about which the mass swings, likewise
+  double noise = 0;     // standard deviation of a sample about the fitted sinusoids, mm; of a velocity or an
+                        // acceleration that of an amplitude by its noise
+  double offset = 0;    // mean of the middle line about which the mass swings, mm
   double drift = 0;     // largest minus smallest value of the middle line
   double duration = 0;  // of the record, s
   double sampling_rate = 0;  // Hz, 1 / the median step
@@ -41,10 +42,11 @@ struct Reduction {
 };
 
 // Returns the half cycles of a record's decay: of the part in which the amplitude falls by the largest
-// factor. Equal values one after the other for half a half cycle count as missing. Throws InputError, naming
-// `name`, if there are fewer than least_samples samples, fewer than 12 half cycles that are used, or too few
-// samples in each.
-Reduction reduced(const std::string& name, const MeasuredRecord& record);
+// factor. Equal values one after the other for half a half cycle count as missing. frequency: Hz, > 0, about
+// that of the oscillation, from which velocities and accelerations are integrated (M16.4). Throws InputError,
+// naming `name`, if there are fewer than least_samples samples, fewer than 12 half cycles that are used, or
+// too few samples in each.
+Reduction reduced(const std::string& name, const MeasuredRecord& record, double frequency);
 
 // Simulates a free decay with x0 > 0 and returns its peaks by the fit used for records, so that an impact
 // near a peak has the same effect on both. Row 0, which is less than a half cycle, is left out. At most
