@@ -5,6 +5,7 @@ is within an interval: ../measured/.
 """
 import json
 import math
+import random
 import re
 import signal
 import sys
@@ -93,6 +94,23 @@ demand("column 2 as velocity in cm/s; time in column 1 in s; semicolons between 
 text, without = compare("acceleration.csv", "--fit", "none")
 demand("fit" not in without, "nothing was to be fitted")
 demand_valid("comparison", without, "without a fit")
+
+# Without impacts a record has the damping ratio alone; with impacts it has no such one.
+noise = random.Random(4)
+for without, carried in (("locked", 1.6), ("absent", 0)):
+    omega, rate = math.sqrt(16000 / (40 + carried)), 0.003 * math.sqrt(16000 * 40) / (40 + carried)
+    write("without.csv", "t_s,x_mm\n" + "".join(
+        f"{i / 100},{40 * math.exp(-rate * i / 100) * math.cos(math.sqrt(omega ** 2 - rate ** 2) * i / 100) + noise.gauss(0, 0.05):.4f}\n"
+        for i in range(4000)))
+    text, other = compare("without.csv", "--without-impacts", without)
+    demand_valid("comparison", other, without)
+    demand(other["without_impacts"] == without and "nothing" not in text and "Hz, " not in text.split("the scene")[1], text)
+    [found_ratio] = other["fit"]["parameters"]
+    demand(found_ratio["low"] - 2e-5 < 0.003 < found_ratio["high"] + 2e-5, f"{without}: 0.003 is not in {found_ratio}")
+    demand(found_ratio["high"] - found_ratio["low"] < 3e-5, f"{without}: a wide interval, {found_ratio}")
+    demand(all(abs(each["simulated"] / 0.004 - 1) < 0.03 for each in other["bins"]), f"{without}: {other['bins'][0]} simulated")
+text, _ = compare(example, "--without-impacts", "locked")
+demand("The loss factor is not the same at all amplitudes" in text, text)
 
 # Friction, inclination and drag are taken from the scene, and said.
 write("slides.json", json.loads(scene.read_text(encoding="utf-8")) | {"friction_coefficient": 0.2, "inclination": 3, "drag": 0.5})

@@ -13,10 +13,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<FitParameter> fitted_of(Arguments& arguments) {
-  FitOptions otherwise;
+std::vector<FitParameter> fitted_of(Arguments& arguments, bool has_impacts) {
   const auto list = arguments.text("--fit");
-  if (!list) return otherwise.parameters;
+  if (!has_impacts && list && list != "none" && list != "damping_ratio")
+    arguments.reject("--fit",
+                     "must be none or damping_ratio with --without-impacts, got " + in_quotes(*list));
+  if (!has_impacts && list != "none") return {FitParameter::damping_ratio};
+  if (!list) return FitOptions{}.parameters;
   std::vector<FitParameter> parameters;
   if (*list == "none") return parameters;
   const std::vector<std::string_view> names = words_of<FitParameter>();
@@ -143,7 +146,10 @@ int compare(Arguments& arguments) {
   const auto scene_name = arguments.text("--scene");
   if (!scene_name) arguments.reject("--scene", "must be given: the scene that the record is compared with");
   ComparisonOptions options;
-  options.fit.parameters = fitted_of(arguments);
+  if (arguments.given("--without-impacts"))
+    options.without_impacts =
+        arguments.choice("--without-impacts", all_of<WithoutImpacts>, WithoutImpacts::locked);
+  options.fit.parameters = fitted_of(arguments, !options.without_impacts);
   options.fit.threads = threads_of(arguments);
   const Engine engine = engine_of(arguments);
   const auto output = arguments.file("--output");
@@ -202,6 +208,9 @@ Command compare_command() {
                       "what is fitted, with commas between: restitution, damping_ratio, "
                       "clearance\n(these are the default), secondary_mass, friction_coefficient, up "
                       "to\nfour; or none"},
+                     {"--without-impacts", "locked|absent",
+                      "the record is one without impacts, the secondary mass locked to the primary one\nor "
+                      "taken out: fits the damping ratio alone"},
                      {"--figures", "FOLDER",
                       "draw amplitude over time and loss factor over amplitude there, "
                       "as\nmeasured_decay.svg and measured_loss.svg"},

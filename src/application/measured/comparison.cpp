@@ -69,6 +69,27 @@ SimulatedDecays decays_of(const SceneInUnits& scene, const Engine& engine, const
   return result;
 }
 
+// The decay without impacts, from the record's first peak on.
+SimulatedDecays decay_without_impacts(const SceneInUnits& scene, double mass_ratio,
+                                      const Reduction& reduction, const std::vector<LossBin>& bins) {
+  SimulatedDecays result{.scene = scene, .decays = {}, .losses = {}, .bins = {}};
+  const double damping_ratio = value_of(scene, FitParameter::damping_ratio) / std::sqrt(1 + mass_ratio);
+  if (!(damping_ratio < 1)) return result;
+  const double part = std::sqrt(1 - damping_ratio * damping_ratio),
+               omega = 2 * half_turn<double>() * scales_of(scene).of(Dimension::frequency) * part /
+                       std::sqrt(1 + mass_ratio),
+               loss = 2 * damping_ratio / part;
+  HalfCycles rows;
+  for (double t = 0; t <= reduction.time.back() - reduction.time.front(); t += half_turn<double>() / omega) {
+    rows.peak_time.push_back(reduction.time.front() + t);
+    rows.amplitude.push_back(reduction.amplitude.front() * exponential(-loss / 2 * omega * t));
+  }
+  result.bins.assign(bins.size(), loss);
+  result.losses.push_back(rows.amplitude.size() < 3 ? LossFactor{} : loss_of(rows, omega));
+  result.decays.push_back(std::move(rows));
+  return result;
+}
+
 std::string text_of(double value) { return rounded_text(value, 3); }
 
 void remark_on_what_is_left_out(Comparison& c) {
@@ -100,7 +121,12 @@ bool remark_on_frequency(Comparison& c) {
 
 void remark_on_fit(Comparison& c) {
   const DecayFit& fit = *c.fit;
-  if (fit.normal_deviate > most_normal_deviate)
+  if (fit.normal_deviate > most_normal_deviate && c.without_impacts)
+    c.remarks.push_back(filled(
+        "The loss factor is not the same at all amplitudes, as it would be with viscous damping alone: "
+        "chi square is {} with {} degrees of freedom. The interval means nothing.",
+        text_of(fit.chi_square), fit.degrees));
+  else if (fit.normal_deviate > most_normal_deviate)
     c.remarks.push_back(
         filled("No decay in the searched range is like the record: chi square is {} with {} "
                "degrees of freedom. The intervals mean nothing.",
@@ -198,29 +224,38 @@ Comparison compared(const std::string& record_name, const MeasuredRecord& record
   require_none(problems);
   Comparison c;
   c.record_name = record_name, c.scene_name = scene_name, c.record = record, c.engine = engine;
+  c.without_impacts = options.without_impacts;
   c.highest_frequency = scales_of(scene).of(Dimension::frequency);
   c.reduction = reduced(record_name, record, c.highest_frequency);
   HalfCycles rows;
   rows.peak_time = c.reduction.time, rows.amplitude = c.reduction.amplitude;
   c.loss = loss_of(std::move(rows), 2 * half_turn<double>() * c.reduction.frequency);
   c.bins = loss_bins(c.reduction);
-  c.lowest_frequency = c.highest_frequency / std::sqrt(1 + dimensionless(scene).damper().mass_ratio);
+  const double carried = locked_mass_ratio(scene, options.without_impacts.value_or(WithoutImpacts::locked));
+  c.lowest_frequency = c.highest_frequency / std::sqrt(1 + carried);
+  if (options.without_impacts) c.highest_frequency = c.lowest_frequency;
   c.remarks = c.reduction.outside;
+  const auto decays = [&](const SceneInUnits& of) {
+    return c.without_impacts ? decay_without_impacts(of, carried, c.reduction, c.bins)
+                             : decays_of(of, engine, c.reduction, c.bins, options);
+  };
   tell("simulating the scene");
-  c.given = decays_of(scene, engine, c.reduction, c.bins, options);
+  c.given = decays(scene);
   const bool can_fit = remark_on_frequency(c) || record.quantity == MeasuredQuantity::displacement;
   if (can_fit && !options.fit.parameters.empty()) {
-    FitResult result = fit_decay(scene, engine, c.reduction, c.bins, options.fit, tell);
+    FitResult result = c.without_impacts ? fit_without_impacts(carried, c.bins)
+                                         : fit_decay(scene, engine, c.reduction, c.bins, options.fit, tell);
     c.fit = std::move(result.fit);
     if (!c.fit) c.remarks.push_back("Nothing is fitted: " + result.problem + ".");
   }
   if (c.fit) {
     SceneInUnits best = scene;
     for (const FittedParameter& each : c.fit->parameters) set_value(best, each.parameter, each.best);
-    c.fitted = decays_of(best, engine, c.reduction, c.bins, options);
+    c.fitted = decays(best);
     remark_on_fit(c);
   }
   remark_on_what_is_left_out(c);
+  if (c.without_impacts) return c;
   remark_on_range(c);
   remark_on_components(c, options.fit);
   if (record.quantity == MeasuredQuantity::acceleration)
@@ -241,6 +276,7 @@ std::string comparison_text(const Comparison& c) {
   out.object("record", Layout::one_line, "file", c.record_name, "quantity", name_of(c.record.quantity),
              "read_as", c.record.read_as, "samples", r.samples, "empty_cells", c.record.empty_cells,
              "duration", r.duration, "sampling_rate", r.sampling_rate);
+  if (c.without_impacts) out.field("without_impacts", name_of(*c.without_impacts));
   out.object("reduction", Layout::one_line, "frequency", r.frequency, "noise", r.noise, "offset", r.offset,
              "drift", r.drift, "clipped", r.clipped, "in_gaps", r.in_gaps, "unclear", r.unclear,
              "ends_in_noise", r.ends_in_noise);

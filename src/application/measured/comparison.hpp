@@ -25,13 +25,15 @@ struct Comparison {
   std::string record_name, scene_name;
   MeasuredRecord record;
   Engine engine;
+  std::optional<WithoutImpacts> without_impacts;  // then `given` and `fitted` have one decay, in closed form
   Reduction reduction;
   LossFactor loss;  // (M12.1) of the record, amplitudes in mm, per radian of its own frequency
   std::vector<LossBin> bins;
   SimulatedDecays given;                  // of the scene
   std::optional<SimulatedDecays> fitted;  // of the scene with the best numbers
   std::optional<DecayFit> fit;
-  // The frequency of the scene lies between these: with the secondary mass carried along, and without.
+  // The frequency of the scene lies between these: with the secondary mass carried along, and without; both
+  // are that of a record without impacts.
   double lowest_frequency = 0, highest_frequency = 0;  // Hz
   std::vector<std::string> remarks;  // a sentence each: what the record does not show, or contradicts
 };
@@ -39,6 +41,8 @@ struct Comparison {
 struct ComparisonOptions {
   FitOptions fit;             // no parameters: nothing is fitted
   std::int64_t releases = 8;  // >= 1
+  // A record without impacts has the damping ratio alone; parameters other than that are not looked at.
+  std::optional<WithoutImpacts> without_impacts{};
 };
 
 // Compares a record with simulations of a scene. `scene` must be valid, without a force and with one damper,

@@ -83,6 +83,12 @@ double most_friction(SceneInUnits scene, double amplitude) {
   return std::max(0.0, (most - made.weight) / made.damper().friction);
 }
 
+double normal_deviate_of(double chi_square, double degrees) {  // (M16.9)
+  const double ninth = 2 / (9 * degrees);
+  const double ratio = std::max(chi_square, std::numeric_limits<double>::min()) / degrees;
+  return (exponential(logarithm(ratio) / 3) - (1 - ninth)) / std::sqrt(ninth);
+}
+
 // A parameter has the name of its field.
 const UnitField& field_of(FitParameter parameter) {
   return *std::ranges::find(unit_fields, name_of(parameter), &UnitField::name);
@@ -634,12 +640,7 @@ std::optional<DecayFit> fit_in(DecaySampler& sampler, Box box_to_begin, int coar
   fit.scatter = emulator->scatter;
   fit.chi_square = profiles.least;
   fit.degrees = std::int64_t(bins.size() - count);
-  const double ninth = 2.0 / (9.0 * double(fit.degrees));  // (M16.9)
-  fit.normal_deviate = (exponential(logarithm(std::max(fit.chi_square, std::numeric_limits<double>::min()) /
-                                              double(fit.degrees)) /
-                                    3) -
-                        (1 - ninth)) /
-                       std::sqrt(ninth);
+  fit.normal_deviate = normal_deviate_of(fit.chi_square, double(fit.degrees));
   return fit;
 }
 
@@ -709,6 +710,44 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
   if (!best) return {std::nullopt, "no decay in the searched range passes through the record's amplitudes"};
   best->runs = sampler.runs;
   return {best, {}};
+}
+
+// --- Without impacts --------------------------------------------------------------------------------------
+
+double locked_mass_ratio(const SceneInUnits& scene, WithoutImpacts without) {
+  return without == WithoutImpacts::locked ? dimensionless(scene).damper().mass_ratio : 0;
+}
+
+FitResult fit_without_impacts(double locked_mass_ratio, const std::vector<LossBin>& bins) {
+  if (bins.size() < 2)
+    return {
+        std::nullopt,
+        filled("the record has {} of at least 2 ranges of amplitude with a known loss factor", bins.size())};
+  double weights = 0, mean = 0;
+  for (const LossBin& bin : bins) weights += 1 / (bin.error * bin.error);
+  for (const LossBin& bin : bins) mean += logarithm(bin.loss) / (bin.error * bin.error) / weights;
+  const auto damping_ratio = [&](double log_loss) {
+    const double half = exponential(log_loss) / 2;
+    return half * std::sqrt((1 + locked_mass_ratio) / (1 + half * half));
+  };
+  const double reach = std::sqrt(FitOptions{}.level / weights);
+  DecayFit fit;
+  fit.parameters.push_back({.parameter = FitParameter::damping_ratio,
+                            .best = damping_ratio(mean),
+                            .low = damping_ratio(mean - reach),
+                            .high = damping_ratio(mean + reach),
+                            .searched_from = 0,
+                            .searched_to = 1});
+  fit.correlation = {{1}};
+  fit.loss.assign(bins.size(), exponential(mean));
+  fit.scatter.assign(bins.size(), 0);
+  for (const LossBin& bin : bins) {
+    const double off = (logarithm(bin.loss) - mean) / bin.error;
+    fit.chi_square += off * off;
+  }
+  fit.degrees = std::int64_t(bins.size()) - 1;
+  fit.normal_deviate = normal_deviate_of(fit.chi_square, double(fit.degrees));
+  return {fit, {}};
 }
 
 }  // namespace impact_damper

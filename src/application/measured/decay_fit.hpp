@@ -98,4 +98,11 @@ FitResult fit_decay(const SceneInUnits& scene, const Engine& engine, const Reduc
                     const std::vector<LossBin>& bins, const FitOptions& options,
                     const std::function<void(const std::string&)>& tell);
 
+// How a decay without impacts was recorded: with the secondary mass locked to the primary one, or taken out.
+enum class WithoutImpacts { locked, absent };
+// The mass ratio of what is carried along in such a decay of the scene.
+double locked_mass_ratio(const SceneInUnits& scene, WithoutImpacts without);
+// Fits the damping ratio to the loss factors of such a decay (M16.11).
+FitResult fit_without_impacts(double locked_mass_ratio, const std::vector<LossBin>& bins);
+
 }  // namespace impact_damper
