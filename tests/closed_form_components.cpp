@@ -149,9 +149,9 @@ TEST_CASE("the energy balance closes, and the run is consistent, in random and i
           std::abs(run.energy->residual) / std::sqrt(events) * std::min(1.0, available / turned);
       if (residual > worst) worst = residual, worst_seed = seed;
     };
-    for (int seed = 0; seed < 150; ++seed) examine(random_scene(std::uint64_t(seed), 1), seed);
-    for (int seed = 150; seed < 300; ++seed) examine(random_scene(std::uint64_t(seed), 5), seed);
-    for (int seed = 300; seed < 600; ++seed) examine(round_scene(std::uint64_t(seed)), seed);
+    for (int seed = 0; seed < many(150); ++seed) examine(random_scene(std::uint64_t(seed), 1), seed);
+    for (int seed = 150; seed < 150 + many(150); ++seed) examine(random_scene(std::uint64_t(seed), 5), seed);
+    for (int seed = 300; seed < 300 + many(300); ++seed) examine(round_scene(std::uint64_t(seed)), seed);
     CAPTURE(worst_seed);
     CHECK(worst < (has_rigid_walls(engine) ? 2e-15 : 1e-14));  // a contact is more than one event
   }
@@ -160,7 +160,7 @@ TEST_CASE("the energy balance closes, and the run is consistent, in random and i
 TEST_CASE("a shorter run with friction, weight and drag is the beginning of a longer one") {
   for (const Engine& engine : engines) {
     CAPTURE(name_of(engine));
-    for (int seed = 0; seed < 60; ++seed) {
+    for (int seed = 0; seed < many(60); ++seed) {
       CAPTURE(seed);
       Scene scene = random_scene(std::uint64_t(seed), seed % 2 ? 1 : 4);
       scene.until_time = 20;

@@ -444,9 +444,9 @@ TEST_CASE("the parts of a damper, with their shares of its wall, are that damper
 
 TEST_CASE("halves of a damper that are released alike are that damper, and one of hardly any mass is none") {
   double compared = 0, in_all = 0;
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (int seed = 0; seed < many(60); ++seed) {
     CAPTURE(seed);
-    const Scene scene = random_rigid_list(seed);
+    const Scene scene = random_rigid_list(std::uint64_t(seed));
     Scene halves = scene, more = scene;
     halves.dampers.front().mass_ratio /= 2;
     halves.dampers.push_back(halves.dampers.front());
@@ -488,18 +488,18 @@ TEST_CASE("another order of the dampers changes no bit of what is recorded but t
         Engine(Cem{.locate = true, .large_step = 0.05, .stuck_speed = 0.3})})
     CHECK(check_order_is_free(scene, engine) > 10);
   std::size_t impacts = 0;
-  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+  for (int seed = 1; seed <= many(60); ++seed) {
     CAPTURE(seed);
-    impacts += check_order_is_free(oracle::random_compliant_list(seed), Exact{});
-    impacts += check_order_is_free(oracle::round_compliant_list(seed), Exact{});
+    impacts += check_order_is_free(oracle::random_compliant_list(std::uint64_t(seed)), Exact{});
+    impacts += check_order_is_free(oracle::round_compliant_list(std::uint64_t(seed)), Exact{});
   }
-  CHECK(impacts > 5'000);
+  CHECK(impacts > std::size_t(many(5'000)));
   impacts = 0;
-  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+  for (int seed = 0; seed < many(100); ++seed) {
     CAPTURE(seed);
-    impacts += check_order_is_free(random_rigid_list(seed), rigid);
+    impacts += check_order_is_free(random_rigid_list(std::uint64_t(seed)), rigid);
   }
-  CHECK(impacts > 5'000);
+  CHECK(impacts > std::size_t(many(5'000)));
 }
 
 TEST_CASE(

@@ -14,6 +14,20 @@
 #include "impact_damper/scene.hpp"
 #include "reference.hpp"
 
+#ifndef __has_feature
+#define __has_feature(name) 0
+#endif
+
+// Returns `count`, but a quarter of it under the sanitizers: there a scene takes five to ten times as long,
+// and random commands (stress/commands.py) run, too.
+constexpr int many(int count) {
+#if defined(__SANITIZE_ADDRESS__) || __has_feature(address_sanitizer)
+  return count / 4;
+#else
+  return count;
+#endif
+}
+
 namespace random_scenes {
 
 // e 0 to 1 (its ends often), nu 1e-8 to 1e3, zeta 0 to 10, k 1 to 1e12, x0, v0 and w0 up to 1e8, y0 anywhere
