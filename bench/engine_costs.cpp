@@ -164,7 +164,7 @@ class EventCounter {
   void sample(double, double, double, double, double) {}
   void sample(double, double, double, std::span<const PlaceInCavity>) {}
   EnergyBalance& energy_balance() { return energy_balance_; }
-  void settled(std::int32_t, PlaceInCavity, bool, double) { ++settled_; }
+  void settled(std::int32_t, PlaceInCavity, bool, double, bool) { ++settled_; }
 
   std::int64_t impacts() const { return impacts_; }
   // Of the calls of settled() the first is that of the release.

@@ -33,8 +33,9 @@ class TestObserver : public Recorder {
   virtual void sample(double time, double x, double v, double y, double w) {
     Recorder::sample(time, x, v, y, w);
   }
-  virtual void settled(std::int32_t damper, const PlaceInCavity& place, bool held, double slides) {
-    Recorder::settled(damper, place, held, slides);
+  virtual void settled(std::int32_t damper, const PlaceInCavity& place, bool held, double slides,
+                       bool pushes) {
+    Recorder::settled(damper, place, held, slides, pushes);
   }
   virtual EnergyBalance& energy_balance() { return Recorder::energy_balance(); }
 
@@ -66,7 +67,7 @@ template <class Real>
 Outcome observed(const Scene& scene, const Engine& engine, TestObserver<Real>& observer) {
   return std::visit([&](const auto& options) { return observed(scene, options, observer); }, engine);
 }
-// The same with a list of dampers; the restitution engine's with friction and weight, too.
+// The same with a list of dampers, and with friction, weight and drag, too.
 Outcome observed_list(const Scene& scene, const Exact& options, TestObserver<long double>& observer);
 Outcome observed_list(const Scene& scene, const Restitution& options, TestObserver<long double>& observer);
 

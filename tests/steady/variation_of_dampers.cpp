@@ -32,7 +32,7 @@ struct LastState : TestObserver<long double> {
     sequence.push_back(2 * damper + (wall == Wall::left));
   }
   void contact(double, double, Wall, std::int32_t damper) override { sequence.push_back(-1 - damper); }
-  void settled(std::int32_t, const PlaceInCavity&, bool held, double slides) override {
+  void settled(std::int32_t, const PlaceInCavity&, bool held, double slides, bool) override {
     sequence.push_back(held ? 1000 : 1001 + int(slides));
   }
   void sample(double, double x, double v, std::span<const PlaceInCavity> places) override {
@@ -113,7 +113,7 @@ std::vector<ChangeOfState> derivative(const Scene& scene, const Engine& engine) 
 
 double coarse(double x) { return std::round(x * 0x1p20) * 0x1p-20; }
 
-enum class Components { none, friction_and_weight };
+enum class Components { none, friction_and_weight, with_drag };
 
 Scene random_scene(std::uint64_t seed, bool rigid, Components components = Components::none) {
   reference::Random random(seed);
@@ -144,6 +144,7 @@ Scene random_scene(std::uint64_t seed, bool rigid, Components components = Compo
     damper.friction = random.chance(0.2) ? 0 : random.log_uniform(0.02, 1);
     if (random.chance(0.6)) damper.static_friction = damper.friction * random.uniform(1, 2);
     if (random.chance(0.2)) damper.w0 = 0;
+    if (components == Components::with_drag && random.chance(0.5)) damper.drag = random.log_uniform(0.01, 1);
   }
   return scene;
 }
@@ -159,6 +160,7 @@ struct Counts {
   int columns = 0, by_force = 0, at_end = 0, impacts = 0, held = 0, held_at_first = 0, kicked_off = 0,
       together = 0;
   int stops = 0, reversals = 0, releases = 0, jumping_releases = 0;  // with friction
+  int stops_in_wall = 0, releases_in_wall = 0, let_go_by_edges = 0;
 };
 Counts compare_derivatives(const Engine& engine, std::uint64_t seeds,
                            Components components = Components::none) {
@@ -187,6 +189,13 @@ Counts compare_derivatives(const Engine& engine, std::uint64_t seeds,
     if (columns == 0) continue;
     const RecordedRun recorded = ForcedScene(scene, engine).record(release_of(scene), *scene.until_time);
     std::vector<const MotionChain::Settled*> before(scene.dampers.size());
+    std::vector<std::size_t> edges;  // the motions before each touch and end of a contact
+    for (const MotionChain::Settled& now : recorded.chain.settled) {
+      const auto*& last = before[std::size_t(now.damper)];
+      if (last && last->pushes != now.pushes) edges.push_back(now.motions);
+      last = &now;
+    }
+    std::ranges::fill(before, nullptr);
     for (const MotionChain::Settled& now : recorded.chain.settled) {
       const auto*& last = before[std::size_t(now.damper)];
       const SceneDamper& damper = scene.dampers[std::size_t(now.damper)];
@@ -196,6 +205,9 @@ Counts compare_derivatives(const Engine& engine, std::uint64_t seeds,
         counts.releases += last->held && !now.held && now.place.w == 0;
         counts.jumping_releases +=
             last->held && !now.held && now.place.w == 0 && damper.holding() > damper.friction;
+        counts.stops_in_wall += last->slides != 0 && now.held && now.pushes;
+        counts.releases_in_wall += last->held && !now.held && now.pushes;
+        counts.let_go_by_edges += last->held && !now.held && std::ranges::count(edges, now.motions) > 0;
       }
       last = &now;
     }
@@ -267,6 +279,20 @@ TEST_CASE("the derivative with friction and weight agrees with differences in ex
   CHECK(counts.reversals > 30);
   CHECK(counts.releases > 40);
   CHECK(counts.jumping_releases > 20);
+}
+
+TEST_CASE("the derivative with friction, weight and drag agrees with these, compliant walls") {
+  const Counts counts = compare_derivatives(Exact{}, 80, Components::with_drag);
+  CHECK(counts.columns > 400);
+  CHECK(counts.by_force > 100);
+  CHECK(counts.at_end > 50);
+  CHECK(counts.impacts > 400);
+  CHECK(counts.stops > 100);
+  CHECK(counts.reversals > 400);
+  CHECK(counts.jumping_releases > 60);
+  CHECK(counts.stops_in_wall > 80);
+  CHECK(counts.releases_in_wall > 80);
+  CHECK(counts.let_go_by_edges > 10);
 }
 
 TEST_CASE("a list of one damper has the exponents of the scene without a list") {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "impact_damper/motion/wall.hpp"
 #include "impact_damper/orbits/corrector.hpp"
@@ -18,7 +19,7 @@ struct Step {
 // The numbers of one damper and its cavity.
 struct Cavity {
   std::size_t damper;
-  double mass_ratio, restitution, clearance, friction, wall_damping;
+  double mass_ratio, restitution, clearance, holding, wall_damping;
 
   bool contains(double y) const { return y >= 0 && y <= clearance; }
   double nearer_wall(double y) const { return y < clearance / 2 ? 0 : clearance; }
@@ -28,7 +29,7 @@ std::vector<Cavity> cavities_of(const Scene& scene, const Engine& engine) {
   const auto* const exact = std::get_if<Exact>(&engine);
   for (const SceneDamper& each : scene.dampers) {
     const double damping = exact ? 2 * zeta_m<double>(each, exact->calibration) * omega_m(each) : 0;
-    all.push_back({all.size(), each.mass_ratio, each.restitution, each.clearance, each.friction, damping});
+    all.push_back({all.size(), each.mass_ratio, each.restitution, each.clearance, each.holding(), damping});
   }
   return all;
 }
@@ -81,15 +82,19 @@ std::optional<Step> across_impact(const Scene& scene, const Cavity& cavity, cons
   return step;
 }
 
-// Takes a mass across the touch of a compliant wall, or the end of the contact (M13.6), to first order: the
-// branch has a kink there.
-Step across_edge(const Cavity& cavity, bool into_contact, StateVector s) {
+// Takes a mass across the touch of a compliant wall, or the end of the contact (M13.35), to first order: the
+// branch has a kink there. held: whether friction holds the mass with y' at an index; joined_mass: that
+// of the primary mass and all that is held.
+Step across_edge(const Cavity& cavity, const std::vector<bool>& held, double joined_mass, bool into_contact,
+                 StateVector s) {
   const std::size_t y = index_of_y(cavity.damper), w = index_of_w(cavity.damper);
-  const double force = (into_contact ? 1 : -1) * cavity.wall_damping, shared = cavity.mass_ratio * force;
+  const double share = cavity.mass_ratio / joined_mass, force = (into_contact ? 1 : -1) * cavity.wall_damping,
+               shared = share * force;
   StateMatrix edge = identity_of(s.size());
   edge[1][y] = shared;
-  for (std::size_t i = 3; i < s.size(); i += 2) edge[i][y] = -shared;
-  edge[w][y] = -(1 + cavity.mass_ratio) * force;
+  for (std::size_t i = 3; i < s.size(); i += 2)
+    if (!held[i]) edge[i][y] = -shared;
+  edge[w][y] = -(1 + share) * force;
   const double q = s[y] - cavity.nearer_wall(s[y]);
   for (std::size_t i = 1; i < s.size(); i += 2) s[i] += edge[i][y] * q;
   return {std::move(edge), std::move(s)};
@@ -105,21 +110,31 @@ std::optional<Crossing> across_phase_0(const Scene& scene, const Engine& engine,
     all.by_state.push_back(std::move(step.by_state));
   };
   const std::vector<Cavity> cavities = cavities_of(scene, engine);
+  constexpr double rounding = 1e-13;
   if (!has_rigid_walls(engine)) {
+    std::vector<bool> held(s.size(), false);
+    double joined_mass = 1;
+    for (const Cavity& cavity : cavities) {
+      const std::size_t w = index_of_w(cavity.damper);
+      if (!(cavity.holding > 0 && std::fabs(s[w]) < rounding)) continue;
+      all.state[w] = 0;
+      held[w] = true;
+      joined_mass += cavity.mass_ratio;
+    }
     for (const Cavity& cavity : cavities) {
       const std::size_t y = index_of_y(cavity.damper);
       const bool into_contact = cavity.contains(before[y]);
-      if (into_contact != cavity.contains(all.state[y])) take(across_edge(cavity, into_contact, all.state));
+      if (into_contact == cavity.contains(all.state[y]) || held[index_of_w(cavity.damper)]) continue;
+      take(across_edge(cavity, held, joined_mass, into_contact, all.state));
     }
     return all;
   }
-  constexpr double rounding = 1e-13;
   bool some_rest = false;
   for (const Cavity& cavity : cavities) {
     double &y = all.state[index_of_y(cavity.damper)], &w = all.state[index_of_w(cavity.damper)];
     const double wall = cavity.nearer_wall(y);
     const bool on_wall = std::fabs(y - wall) < rounding;
-    if (!(std::fabs(w) < rounding && (on_wall || cavity.friction > 0))) continue;
+    if (!(std::fabs(w) < rounding && (on_wall || cavity.holding > 0))) continue;
     if (on_wall) y = wall;
     w = 0;
     some_rest = true;

@@ -203,7 +203,7 @@ Branches find_branches(const Scene& scene, const Engine& engine, const Parameter
   const BranchSearch search(engine, range, rule);
   for (const double value : {range.from, range.to})
     for (const SceneState& start : starts)
-      require_none(problems_of_derivatives(search.at(released_from(scene, start), value), engine));
+      require_none(problems_of(search.at(released_from(scene, start), value), engine));
 
   Branches all;
   progress(0);

@@ -81,7 +81,7 @@ LyapunovExponents lyapunov_exponents(const Scene& scene, const Engine& engine, s
   if (scene.dampers.size() > most_dampers_with_changes)
     problems.push_back({"dampers", "must be at most " + std::to_string(most_dampers_with_changes) +
                                        " for exponents, got " + std::to_string(scene.dampers.size())});
-  for (const Problem& each : problems_of_derivatives(scene, engine)) problems.push_back(each);
+  for (const Problem& each : problems_of(scene, engine)) problems.push_back(each);
   require_none(problems);
   MotionWithFrame motion(scene, engine);
   LyapunovExponents result;

@@ -53,20 +53,18 @@ MassesAlongRun::MassesAlongRun(const VariationalCoefficients& of, const Recorded
   for (const PlaceInCavity& each : run.begin.dampers) masses.push_back({.y = each.y, .w = each.w});
 }
 
-double MassesAlongRun::joined_mass() const {
-  double all = 1;
-  for (std::size_t i = 0; i < masses.size(); ++i)
-    if (masses[i].wall != 0) all += of_.dampers[i].nu;
-  return all;
+double MassesAlongRun::force_in_cavity(std::size_t i) const {
+  const VariationalCoefficients::OfDamper& its = of_.dampers[i];
+  const Mass& mass = masses[i];
+  double force = its.friction * mass.slides + its.drag * mass.w;
+  if (mass.wall != 0) force += its.damping * mass.w + wall_spring(i);
+  return force;
 }
 
 double MassesAlongRun::acceleration(double time) const {
   double force = of_.force.amplitude * of_.force.phase(time).sin - 2 * of_.zeta * v - x;
-  for (std::size_t i = 0; i < masses.size(); ++i) {
-    const VariationalCoefficients::OfDamper& its = of_.dampers[i];
-    const bool free = masses[i].wall == 0;
-    force += its.nu * (free ? its.friction * masses[i].slides + its.drag * masses[i].w : -of_.weight);
-  }
+  for (std::size_t i = 0; i < masses.size(); ++i)
+    force += of_.dampers[i].nu * (masses[i].held ? -of_.weight : force_in_cavity(i));
   return force / joined_mass();
 }
 
@@ -84,11 +82,13 @@ bool MassesAlongRun::take_contacts(std::size_t n) {
   for (std::size_t i = 0; i < masses.size(); ++i) {
     if (!ends_contact(i, n)) continue;
     masses[i].wall = 0;
+    masses[i].held = false;
     some = true;
   }
   for (; some_begin_at(n); ++next_contact_) {
     const ContactInterval& begins = contacts[next_contact_];
     masses[begins.damper].wall = begins.away;
+    masses[begins.damper].held = of_.rigid;
     masses[begins.damper].end_of_contact = begins.last;
   }
   in_contact.clear();
@@ -97,7 +97,7 @@ bool MassesAlongRun::take_contacts(std::size_t n) {
   return some;
 }
 
-bool MassesAlongRun::comes_to_rigid_event(std::size_t n) {
+bool MassesAlongRun::comes_to_event(std::size_t n) {
   come_to(n);
   if (of_.has_components) {
     const auto& all = run_.chain.settled;
@@ -105,9 +105,13 @@ bool MassesAlongRun::comes_to_rigid_event(std::size_t n) {
     while (next_settled_ < all.size() && all[next_settled_].motions == n) ++next_settled_;
     settled_ = std::span(all).subspan(first, next_settled_ - first);
     if (settled_.empty()) return false;
-    for (const MotionChain::Settled& each : settled_) {  // y' + d y since the last event (M13.33)
+    for (const MotionChain::Settled& each : settled_) {
       Mass& mass = masses[std::size_t(each.damper)];
-      if (mass.wall == 0) mass.w -= of_.dampers[std::size_t(each.damper)].drag * (each.place.y - mass.y);
+      if (!of_.rigid) {  // no event moves a mass
+        mass.w = each.place.w;
+      } else if (!mass.held) {  // y' + d y since the last event (M13.33)
+        mass.w -= of_.dampers[std::size_t(each.damper)].drag * (each.place.y - mass.y);
+      }
       mass.y = each.place.y;
     }
   } else if (impacts.empty() && !some_begin_at(n)) {
@@ -135,8 +139,9 @@ void MassesAlongRun::find_active() {
     mass.meets = true;
     at_walls_.push_back({i, its.nu, its.e, impact.w < 0 ? 1.0 : -1.0, -std::fabs(impact.w)});
   }
+  if (!of_.rigid) return;
   for (std::size_t i = 0; i < masses.size(); ++i)
-    if (masses[i].wall != 0 && masses[i].wall != held_by_friction)
+    if (masses[i].wall != 0)
       at_walls_.push_back({i, of_.dampers[i].nu, of_.dampers[i].e, double(masses[i].wall), 0.0});
   const double jump = jump_of_velocity<double>(std::span(at_walls_));
   for (const MassAtWall<double>& each : at_walls_) {
@@ -146,11 +151,12 @@ void MassesAlongRun::find_active() {
   }
 }
 
-void MassesAlongRun::pass_rigid_event(std::size_t n) {
+void MassesAlongRun::pass_event(std::size_t n) {
   double gained = 0;
   for (std::size_t i = 0; i < masses.size(); ++i) {
     const VariationalCoefficients::OfDamper& its = of_.dampers[i];
     masses[i].wall_before = masses[i].wall;
+    masses[i].held_before = masses[i].held;
     masses[i].slides_before = masses[i].slides;
     if (masses[i].is_active) gained += its.nu * (1 + its.e) * masses[i].w / active_mass;
   }
@@ -167,14 +173,14 @@ void MassesAlongRun::pass_rigid_event(std::size_t n) {
   for (std::size_t i = 0; i < masses.size(); ++i) {
     Mass& mass = masses[i];
     // A mass that its wall leaves behind and that sticks again at the same event counts as newly stuck.
-    const bool stays = mass.wall_before != 0 && (impacts.empty() || mass.is_active);
-    mass.joins = mass.wall != 0 && !stays;
+    const bool stays = mass.held_before && (!of_.rigid || impacts.empty() || mass.is_active);
+    mass.joins = mass.held && !stays;
     mass.w = mass.is_active ? -of_.dampers[i].e * mass.w : mass.w - gained;
     if (mass.joins) joined += of_.dampers[i].nu * mass.w / joined_to;
   }
   v += joined;
   for (Mass& mass : masses) {
-    mass.w = mass.wall != 0 ? 0 : mass.w - joined;
+    mass.w = mass.held ? 0 : mass.w - joined;
     mass.joins_place = mass.joins;
   }
   if (!of_.has_components) return;
@@ -182,8 +188,8 @@ void MassesAlongRun::pass_rigid_event(std::size_t n) {
   const double pressed = n == 0 ? acceleration(run_.chain.motions[n].begin) + of_.weight : 0;
   for (std::size_t i = 0; i < masses.size(); ++i) {
     Mass& mass = masses[i];
-    mass.joins_place = mass.joins && mass.wall != held_by_friction &&
-                       (n > 0 || mass.wall * pressed > of_.dampers[i].holding);
+    mass.joins_place =
+        of_.rigid && mass.joins && mass.wall != 0 && (n > 0 || mass.wall * pressed > of_.dampers[i].holding);
   }
 }
 
@@ -193,22 +199,23 @@ void MassesAlongRun::take_settled() {
   for (const MotionChain::Settled& each : settled_) {
     const auto i = std::size_t(each.damper);
     Mass& mass = masses[i];
-    const bool left = each.place.y == 0, right = each.place.y == of_.dampers[i].clearance;
-    mass.wall = !each.held ? 0 : left ? 1 : right ? -1 : held_by_friction;
+    const bool left = each.place.y <= 0, right = each.place.y >= of_.dampers[i].clearance;
+    mass.held = each.held;
+    mass.wall = !(of_.rigid ? each.held : each.pushes) ? 0 : left ? 1 : right ? -1 : 0;
     mass.slides = each.slides;
     mass.y = each.place.y;
-    if (each.held) in_contact.push_back(i);
+    if (mass.held || mass.wall != 0) in_contact.push_back(i);
   }
 }
 
-void MassesAlongRun::come_to_compliant_events(std::size_t n) {
+void MassesAlongRun::come_to_contacts(std::size_t n) {
   come_to(n);
   for (std::size_t i = 0; i < masses.size(); ++i)
     if (ends_contact(i, n)) continued = false;
   if (!impacts.empty()) continued = false;
 }
 
-void MassesAlongRun::pass_compliant_events(std::size_t n) {
+void MassesAlongRun::pass_contacts(std::size_t n) {
   for (std::size_t i = 0; i < masses.size(); ++i) {
     if (!ends_contact(i, n)) continue;
     masses[i].y = position_of_wall(i);

@@ -33,6 +33,7 @@ struct VariationalCoefficients {
       : scene(std::move(of_scene)),
         rigid(has_rigid_walls(engine)),
         has_components(impact_damper::has_components(scene)),
+        plain_contacts(!rigid && !has_components),
         zeta(scene.damping_ratio),
         weight(scene.weight),
         force{scene.force_amplitude, scene.force_frequency},
@@ -55,26 +56,29 @@ struct VariationalCoefficients {
 
   Scene scene;
   bool rigid, has_components;
+  bool plain_contacts;  // compliant walls, without friction, weight and drag
   double zeta, weight;
   Forcing<double> force;
   Oscillator<double> free;  // the primary mass alone
   std::vector<OfDamper> dampers;
 };
 
-// For each motion n of the run, from 0, the caller calls comes_to_rigid_event(n) and, if that is true,
-// pass_rigid_event(n), or with compliant walls come_to_compliant_events(n) and pass_compliant_events(n). Then
-// it advances y and y' of the masses in flight to the end of the motion, as far as it needs them, and calls
-// pass(motion). With drag y' may be advanced without it where y is not advanced: the next event adds it.
+// For each motion n of the run, from 0, the caller calls comes_to_event(n) and, if that is true,
+// pass_event(n), or with plain contacts come_to_contacts(n) and pass_contacts(n). Then it advances y and y'
+// of the masses in flight to the end of the motion, as far as it needs them, and calls pass(motion). With
+// drag and rigid walls y' may be advanced without it where y is not advanced: the next event adds it. With
+// compliant walls and friction, weight or drag the events have y and y' of all masses.
 class MassesAlongRun {
  public:
-  static constexpr int held_by_friction = 2;  // a value of Mass::wall: held between the walls
   struct Mass {
     double y, w;
-    int wall = 0;                    // ContactInterval::away while it sticks or is in contact, else 0
-    int wall_before = 0;             // the same before the last event at rigid walls
+    int wall = 0;         // ContactInterval::away while it sticks or is in contact, else 0
+    bool held = false;    // it moves with the primary mass: it sticks to a rigid wall, or friction holds it
+    int wall_before = 0;  // both before the last event, not of plain contacts
+    bool held_before = false;
     std::size_t end_of_contact = 0;  // ContactInterval::last of that contact
-    // Whether at the last event at rigid walls it had an impact, stuck from then on, got an impulse from its
-    // wall (M17.3).
+    // Whether at the last event it had an impact, was held from then on, got an impulse from its rigid wall
+    // (M17.3).
     bool meets = false, joins = false, is_active = false;
     bool joins_place = false;  // it joined with the change of y, too (M13.24)
     // With friction: the sign of y' with which it acts, 0 where the mass does not slide, and the same before
@@ -85,18 +89,18 @@ class MassesAlongRun {
   // Both must outlive this object.
   MassesAlongRun(const VariationalCoefficients& of, const RecordedRun& run);
 
-  // Whether there is an event at rigid walls between the motions n - 1 and n: impacts, or sticking that
-  // begins. If so, finds which masses it acts on; x', y' and `wall` are still those before. If not, ends the
-  // sticking that ends there, which changes no speed. With friction stops and releases are events,
-  // too, and the first one is the beginning of the run.
-  bool comes_to_rigid_event(std::size_t n);
-  // Applies that event to x', y, y' and `wall` of all masses.
-  void pass_rigid_event(std::size_t n);
-  // Sets `impacts` and `continued` for the events at compliant walls between the motions n - 1 and n: touches
-  // and ends of contacts, for which ends_contact() is true.
-  void come_to_compliant_events(std::size_t n);
+  // Whether there is an event between the motions n - 1 and n. At rigid walls: impacts, or sticking that
+  // begins. If so, finds which masses it acts on; x', y', `wall` and `held` are still those before. If not,
+  // ends the sticking that ends there, which changes no speed. With friction, weight or drag also stops,
+  // releases and, at compliant walls, touches and ends of contacts; the first is the beginning of the run.
+  bool comes_to_event(std::size_t n);
+  // Applies that event to x', y, y', `wall` and `held` of all masses.
+  void pass_event(std::size_t n);
+  // Sets `impacts` and `continued` for the plain touches and ends of contacts, for which ends_contact() is
+  // true, between the motions n - 1 and n.
+  void come_to_contacts(std::size_t n);
   // Sets y and y' of the masses of these events, and ends and begins their contacts.
-  void pass_compliant_events(std::size_t n);
+  void pass_contacts(std::size_t n);
   // Sets x and x' to those at the end of a motion.
   void pass(const MotionChain::Motion& motion) { x = motion.x, v = motion.v; }
 
@@ -105,10 +109,19 @@ class MassesAlongRun {
     return masses[i].wall != 0 && masses[i].end_of_contact == n;
   }
   double position_of_wall(std::size_t i) const { return masses[i].wall > 0 ? 0 : of_.dampers[i].clearance; }
-  // The primary mass and all that sticks to it, divided by the primary mass.
-  double joined_mass() const;
-  // x'' with rigid walls.
+  // The primary mass and all that is held, divided by the primary mass, now and before the last event.
+  double joined_mass() const { return joined_by(&Mass::held); }
+  double joined_mass_before() const { return joined_by(&Mass::held_before); }
+  // x'', for which y and y' of all that pushes a compliant wall and y' of all that slides in a fluid must be
+  // those of now.
   double acceleration(double time) const;
+  // The force R of (M18.1) of a mass that is not held.
+  double force_in_cavity(std::size_t i) const;
+  // K q of a mass in a compliant wall, else 0.
+  double wall_spring(std::size_t i) const {
+    return of_.rigid || masses[i].wall == 0 ? 0
+                                            : of_.dampers[i].stiffness * (masses[i].y - position_of_wall(i));
+  }
   // What is constant in -(x'' + y'') of a mass in flight, to which drag adds d y'.
   double pull(std::size_t i) const { return of_.dampers[i].friction * masses[i].slides + of_.weight; }
 
@@ -117,11 +130,17 @@ class MassesAlongRun {
   std::vector<std::size_t> in_contact;           // masses whose `wall` is not 0, ascending
   std::vector<ContactInterval> contacts;         // of the whole run
   std::span<const MotionChain::Impact> impacts;  // between the motions n - 1 and n
-  double active_mass = 1;  // at the last rigid event: 1 plus the mass ratios that are active
+  double active_mass = 1;  // at the last event at rigid walls: 1 plus the mass ratios that are active
   bool continued = false;  // no event lies between the motions n - 1 and n: flights go on
 
  private:
   void come_to(std::size_t n);
+  double joined_by(bool Mass::*held) const {
+    double all = 1;
+    for (std::size_t i = 0; i < masses.size(); ++i)
+      if (masses[i].*held) all += of_.dampers[i].nu;
+    return all;
+  }
   bool some_begin_at(std::size_t n) const {
     return next_contact_ < contacts.size() && contacts[next_contact_].first == n;
   }

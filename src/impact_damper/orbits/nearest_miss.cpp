@@ -23,9 +23,9 @@ class NearestMiss {
   std::optional<double> find() {
     for (std::size_t n = 0; n < run_.chain.motions.size(); ++n) {
       const MotionChain::Motion& motion = run_.chain.motions[n];
-      if (of_.rigid) {
-        if (now_.comes_to_rigid_event(n)) {
-          now_.pass_rigid_event(n);
+      if (!of_.plain_contacts) {
+        if (now_.comes_to_event(n)) {
+          now_.pass_event(n);
           note_stops();
         }
         if (of_.has_components) {
@@ -34,8 +34,8 @@ class NearestMiss {
           pass_masses(motion, now_.joined_mass());
         }
       } else {
-        now_.come_to_compliant_events(n);
-        now_.pass_compliant_events(n);
+        now_.come_to_contacts(n);
+        now_.pass_contacts(n);
         if (now_.in_contact.empty()) {
           pass_masses(motion, 1);
         } else if (now_.masses.size() > 1) {
@@ -55,32 +55,47 @@ class NearestMiss {
   void note_stops() {
     for (std::size_t i = 0; i < now_.masses.size(); ++i) {
       const MassesAlongRun::Mass& mass = now_.masses[i];
-      if (mass.slides_before == 0 || mass.meets || mass.w != 0) continue;
+      if (mass.slides_before == 0 || mass.meets || mass.w != 0 || in_wall(i)) continue;
       note(mass.slides_before > 0 ? of_.dampers[i].clearance - mass.y : mass.y);
     }
   }
-  // Follows the masses in flight, on which friction, weight or drag act, and updates the nearest miss by
-  // those without friction.
+  // Whether a mass pushes a compliant wall.
+  bool in_wall(std::size_t i) const { return !of_.rigid && now_.masses[i].wall != 0; }
+  // Whether a mass in flight may turn back without a stop.
+  bool may_turn(std::size_t i) const {
+    return !now_.masses[i].held && !in_wall(i) && of_.dampers[i].friction == 0;
+  }
+  // Follows the masses in flight, on which friction, weight or drag act, and those that push compliant walls,
+  // and updates the nearest miss.
   void pass_with_components(const MotionChain::Motion& motion) {
+    // An event at compliant walls tells where all masses are.
+    bool some_may_turn = of_.rigid;
+    for (std::size_t i = 0; i < now_.masses.size(); ++i) some_may_turn = some_may_turn || may_turn(i);
+    if (!some_may_turn) return;
     const double joined_mass = now_.joined_mass();
-    fluid_.clear();
-    number_in_fluid_.assign(now_.masses.size(), 0);
+    in_series_.clear();
+    number_in_series_.assign(now_.masses.size(), 0);
     forces_ = {.weight = of_.weight, .held = joined_mass - 1};
     for (std::size_t i = 0; i < now_.masses.size(); ++i) {
       const VariationalCoefficients::OfDamper& its = of_.dampers[i];
-      if (now_.masses[i].wall != 0) continue;
-      const double friction = its.friction * now_.masses[i].slides;
-      if (its.drag == 0) {
+      const MassesAlongRun::Mass& mass = now_.masses[i];
+      if (mass.held) continue;
+      const double friction = its.friction * mass.slides;
+      if (in_wall(i)) {
+        in_series_.push_back(
+            {its.nu, its.stiffness, its.damping + its.drag, mass.y - now_.position_of_wall(i), mass.w});
+      } else if (its.drag != 0) {
+        in_series_.push_back({its.nu, 0, its.drag, 0, mass.w});
+      } else {
         forces_.others += its.nu * friction;
         continue;
       }
-      fluid_.push_back({its.nu, 0, its.drag, 0, now_.masses[i].w});
       forces_.friction.push_back(friction);
-      number_in_fluid_[i] = fluid_.size();
+      number_in_series_[i] = in_series_.size();
     }
-    if (!fluid_.empty()) {
-      in_fluid_.begin(of_.zeta, of_.force, motion.begin, now_.x, now_.v, fluid_, forces_);
-      return follow(in_fluid_, motion.duration);
+    if (!in_series_.empty()) {
+      series_.begin(of_.zeta, of_.force, motion.begin, now_.x, now_.v, in_series_, forces_);
+      return follow(series_, motion.duration);
     }
     const Forcing<double> force{of_.force.amplitude / joined_mass, of_.force.frequency};
     std::optional<ForcedOscillator> joined;
@@ -96,31 +111,30 @@ class NearestMiss {
     const double span = moved_by.span(search_.span);
     for (std::size_t i = 0; i < now_.masses.size(); ++i) {
       MassesAlongRun::Mass& mass = now_.masses[i];
-      if (mass.wall != 0) continue;
-      const double pull = number_in_fluid_[i] > 0 ? 0 : now_.pull(i);
+      if (mass.held) continue;
+      const double pull = number_in_series_[i] > 0 ? 0 : now_.pull(i);
       // Let go by its wall it has y'' = 0 there, too; see Flight::turn_of_y().
       double begin = 0;
       if (mass.w == 0) {
         Now now(moved_by, 0, span);
-        auto&& first = now.of_mass(number_in_fluid_[i]);
+        auto&& first = now.of_mass(number_in_series_[i]);
         begin = begin_by_lead<double>(2, first[3], first.bound(4), span);
       }
       const auto gained = [&](double t) {
-        const auto [x, v, dx, dv] = moved_by.of_mass(number_in_fluid_[i], t, moved_by.displacement(t));
+        const auto [x, v, dx, dv] = moved_by.of_mass(number_in_series_[i], t, moved_by.displacement(t));
         return PlaceInCavity{mass.w * t - (dx + pull * t * t / 2), -(dv + pull * t)};
       };
       const auto turn = [&](double sign, double from) {
         return isolate_fall<double>(
             [&](double t) {
               Now now(moved_by, t, span);
-              auto&& x = now.of_mass(number_in_fluid_[i]);
+              auto&& x = now.of_mass(number_in_series_[i]);
               const double w = mass.w - (x.displacement().dv + pull * t);
               return LocalEnclosure<double>{{sign * w, -sign * (x[2] + pull), -sign * x[3], x.bound(4)}};
             },
             std::max(from, begin), duration, search_, 1.0);
       };
-      if (of_.dampers[i].friction == 0)
-        look_for_misses(i, turn, [&](double time) { return mass.y + gained(time).y; });
+      if (may_turn(i)) look_for_misses(i, turn, [&](double time) { return mass.y + gained(time).y; });
       const PlaceInCavity end = gained(duration);
       mass.y += end.y;
       mass.w += end.w;
@@ -213,9 +227,9 @@ class NearestMiss {
   const RecordedRun& run_;
   MassesAlongRun now_;
   ForcedOscillator free_;
-  MotionBySeries<double, Forcing<double>> in_fluid_;
-  std::vector<PushedWall<double>> fluid_;  // the masses that slide in a fluid
-  std::vector<std::size_t> number_in_fluid_;
+  MotionBySeries<double, Forcing<double>> series_;
+  std::vector<PushedWall<double>> in_series_;  // the masses that slide in a fluid or push compliant walls
+  std::vector<std::size_t> number_in_series_;  // 1 + the index there, 0 where a mass is not
   ConstantForces<double> forces_;
   std::vector<FlightStart<double>> starts_;
   JointContact<double, Forcing<double>> joint_;

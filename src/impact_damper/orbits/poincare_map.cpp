@@ -6,9 +6,7 @@
 #include <functional>
 #include <span>
 #include <utility>
-#include <variant>
 
-#include "impact_damper/base/number_text.hpp"
 #include "impact_damper/math/elementary.hpp"
 #include "impact_damper/orbits/masses_along_run.hpp"
 #include "impact_damper/orbits/variational_equations.hpp"
@@ -73,18 +71,6 @@ Multipliers multipliers_of(const Matrix& matrix) {
   return all;
 }
 
-std::vector<Problem> problems_of_derivatives(const Scene& scene, const Engine& engine) {
-  std::vector<Problem> problems = problems_of(scene, engine);
-  if (!problems.empty()) return problems;
-  for (const auto& [name, number, least, most] : numbers_of(scene)) {
-    const double value = number.in(scene);
-    if (!field_of(number).component || value == 0 || std::holds_alternative<Restitution>(engine)) continue;
-    problems.push_back({name, "must be 0 where changes of the motion are followed, got " +
-                                  number_text(value) + ": only the restitution engine has it then"});
-  }
-  return problems;
-}
-
 Scene scene_of_map(Scene scene, int half_periods) {
   if (!(half_periods >= 1)) require_none({{"periods", "must be >= 1"}});
   if (half_periods % 2 != 0 && !has_mirror(scene))
@@ -101,9 +87,7 @@ PoincareMap::PoincareMap(const Scene& scene, const Engine& engine, int half_peri
       engine_(engine),
       half_periods_(half_periods),
       forced_(scene_, engine_),
-      coefficients_(variational_coefficients(scene_, engine_)) {
-  require_none(problems_of_derivatives(scene_, engine_));
-}
+      coefficients_(variational_coefficients(scene_, engine_)) {}
 
 Expected<PoincareImage, StopReason> PoincareMap::operator()(const SceneState& s, Derivatives wanted,
                                                             double misses_within) const {

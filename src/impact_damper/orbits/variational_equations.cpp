@@ -40,22 +40,27 @@ int pieces_of(double loss) { return loss < most_pieces ? 1 + int(loss) : most_pi
 // Whether even most_pieces pieces contract by more than exp(-36) each, a rounding error: directions are lost.
 bool is_lost(double loss) { return loss > 36.0 * most_pieces; }
 
+// A mass whose changes are coupled to those of x by y' or y: it pushes a compliant wall, K and c + d, or
+// slides in a fluid, 0 and d.
+struct Coupled {
+  std::size_t damper;
+  double nu, stiffness, damping;
+};
+
 // The propagator of changes while several masses push their compliant walls (M13.27), or slide in a fluid
 // (M13.33).
 class JointPropagator {
  public:
-  // coupled: indices of these masses. mass: of the primary mass and all that sticks to it. with_force: for
-  // changes of the force, too.
-  JointPropagator(const VariationalCoefficients& of, std::span<const std::size_t> coupled, double mass,
+  // mass: of the primary mass and all that is held. with_force: for changes of the force, too.
+  JointPropagator(const VariationalCoefficients& of, std::span<const Coupled> coupled, double mass,
                   double duration, bool with_force)
       : coupled_(coupled), mass_(mass) {
     const std::size_t n = 2 + 2 * coupled.size() + (with_force ? 4 : 0);
     double rate = with_force ? of.force.frequency : 0, all_k = 0, most_k = 0;
-    for (const std::size_t i : coupled) {
-      const OfDamper& each = of.dampers[i];
+    for (const Coupled& each : coupled) {
       all_k += each.nu * each.stiffness;
       most_k = std::max(most_k, each.stiffness);
-      rate += (1 + each.nu) * (each.damping + each.drag);
+      rate += (1 + each.nu) * each.damping;
     }
     rate += 2 * of.zeta + std::sqrt(1 + all_k + most_k);
     matrix_ =
@@ -80,15 +85,15 @@ class JointPropagator {
     from[0] = s[0], from[1] = s[1];
     const std::size_t n = 2 + 2 * coupled_.size();
     for (std::size_t k = 0; k < coupled_.size(); ++k) {
-      from[2 + 2 * k] = s[index_of_y(coupled_[k])];
-      from[3 + 2 * k] = s[index_of_w(coupled_[k])];
+      from[2 + 2 * k] = s[index_of_y(coupled_[k].damper)];
+      from[3 + 2 * k] = s[index_of_w(coupled_[k].damper)];
     }
     if (from.size() > n) std::copy(force.begin(), force.end(), from.begin() + std::ptrdiff_t(n));
     const Vector to = product(matrix_, from);
     s[0] = to[0], s[1] = to[1];
     for (std::size_t k = 0; k < coupled_.size(); ++k) {
-      s[index_of_y(coupled_[k])] = to[2 + 2 * k];
-      s[index_of_w(coupled_[k])] = to[3 + 2 * k];
+      s[index_of_y(coupled_[k].damper)] = to[2 + 2 * k];
+      s[index_of_w(coupled_[k].damper)] = to[3 + 2 * k];
     }
   }
 
@@ -99,8 +104,8 @@ class JointPropagator {
     double a = -2 * of.zeta * s[1] - s[0];
     if (s.size() > n) a += s[n];
     for (std::size_t k = 0; k < coupled_.size(); ++k) {
-      const OfDamper& each = of.dampers[coupled_[k]];
-      const double push = (each.damping + each.drag) * s[3 + 2 * k] + each.stiffness * s[2 + 2 * k];
+      const Coupled& each = coupled_[k];
+      const double push = each.damping * s[3 + 2 * k] + each.stiffness * s[2 + 2 * k];
       a += each.nu * push;
       rates[2 + 2 * k] = s[3 + 2 * k];
       rates[3 + 2 * k] = -push;
@@ -116,7 +121,7 @@ class JointPropagator {
     rates[n + 3] = -omega * g[2];
   }
 
-  std::span<const std::size_t> coupled_;
+  std::span<const Coupled> coupled_;
   double mass_;
   // Rows and columns of x, x', q and q' of each coupled mass, and (g, h, a, b) of (M13.27).
   Matrix matrix_;
@@ -127,35 +132,31 @@ void find_rates(const VariationalCoefficients& of, const MassesAlongRun& now, do
                 ChangeOfState& all) {
   all.resize(of.dimensions());
   all[0] = now.v;
-  if (of.rigid) {
-    all[1] = now.acceleration(time);
-    for (std::size_t i = 0; i < now.masses.size(); ++i) {
-      const bool free = now.masses[i].wall == 0;
-      all[index_of_y(i)] = free ? now.masses[i].w : 0;
-      all[index_of_w(i)] = free ? -(all[1] + now.pull(i) + of.dampers[i].drag * now.masses[i].w) : 0;
-    }
-    return;
-  }
-  double a = of.force.amplitude * of.force.phase(time).sin - 2 * of.zeta * now.v - now.x;
+  all[1] = now.acceleration(time);
   for (std::size_t i = 0; i < now.masses.size(); ++i) {
-    all[index_of_y(i)] = now.masses[i].w;
-    all[index_of_w(i)] = 0;
-    if (now.masses[i].wall == 0) continue;
-    const OfDamper& its = of.dampers[i];
-    const double push =
-        its.damping * now.masses[i].w + its.stiffness * (now.masses[i].y - now.position_of_wall(i));
-    a += its.nu * push;
-    all[index_of_w(i)] = -push;
+    const bool held = now.masses[i].held;
+    all[index_of_y(i)] = held ? 0 : now.masses[i].w;
+    all[index_of_w(i)] = held ? 0 : -(all[1] + now.force_in_cavity(i) + of.weight);
   }
-  all[1] = a;
-  for (std::size_t i = 0; i < now.masses.size(); ++i) all[index_of_w(i)] -= a;
 }
 
-// The saltation matrix of an event at rigid walls (M13.4), with friction, weight or drag (13.11).
-class RigidSaltation {
+// Adds what touch (sign 1) or end (-1) of a contact with a compliant wall changes, (M13.25) and (M13.35):
+// `amount` times the jump of the rates, divided by y'.
+void add_edge(const VariationalCoefficients& of, const MassesAlongRun& now, std::size_t damper, int sign,
+              double amount, ChangeOfState& s) {
+  const OfDamper& its = of.dampers[damper];
+  const double share = its.nu / now.joined_mass_before();
+  const double on_primary = sign * share * its.damping, on_own = -sign * (1 + share) * its.damping;
+  s[1] += on_primary * amount;
+  for (std::size_t i = 0; i < now.masses.size(); ++i)
+    if (!now.masses[i].held_before) s[index_of_w(i)] += (i == damper ? on_own : -on_primary) * amount;
+}
+
+// The saltation matrix of an event (M13.4) at rigid walls, or with friction, weight or drag (13.11).
+class Saltation {
  public:
   // All must outlive this object. Carried::one_sided and stop_margin are kept up to date.
-  RigidSaltation(const VariationalCoefficients& of, const MassesAlongRun& now, Carried& all)
+  Saltation(const VariationalCoefficients& of, const MassesAlongRun& now, Carried& all)
       : of_(of), now_(now), all_(all) {}
 
   // Finds the matrix of an event at a time: begin() is called before its jump of the state, find() after it.
@@ -163,18 +164,26 @@ class RigidSaltation {
   void find(double time, bool run_begins) {
     find_rates(of_, now_, time, rates_after_);
     find_shares();
+    find_edges(run_begins);
     find_conditions(time);
     // A mass at rest that begins to slide as the run begins: after a change of y' against that direction it
     // would stop first.
     if (run_begins)
       for (const MassesAlongRun::Mass& mass : now_.masses)
         all_.one_sided = all_.one_sided || (mass.slides != 0 && mass.w == 0);
-    if (conditions_.empty()) return;
+    const bool acts = !conditions_.empty();
+    if (!acts && edges_.empty()) return;
+    // Touches and ends of contacts at one instant have a derivative.
     const bool at_one_instant = of_.has_components && last_time_ && time - *last_time_ <= 1e-14 * (1 + time);
-    if (at_one_instant || (conditions_.size() > 1 && !all_stay_)) all_.one_sided = true;
+    if ((at_one_instant && (acts || last_acts_)) || (conditions_.size() > 1 && !all_stay_))
+      all_.one_sided = true;
     last_time_ = time;
+    last_acts_ = acts;
+    if (!acts) return;
     shift_ = rates_before_;
     jump(shift_);
+    for (const Edge& each : edges_)
+      add_edge(of_, now_, each.damper, each.sign, now_.masses[each.damper].w, shift_);
     for (std::size_t i = 0; i < shift_.size(); ++i) shift_[i] = rates_after_[i] - shift_[i];
   }
   // Multiplies a change by it. by_force(): the derivative of f at that time by what is changed.
@@ -182,7 +191,9 @@ class RigidSaltation {
   void apply(ChangeOfState& s, ByForce&& by_force) const {
     double earlier = 0;  // by how much the event comes earlier after this change
     for (const Condition& each : conditions_)
-      earlier += (each.index > 0 ? s[each.index] : by_force() + change_in_band(s)) / each.rate;
+      earlier += (each.index > 0 ? s[each.index] : by_force() + change_in_band(each.damper, s)) / each.rate;
+    for (const Edge& each : edges_)
+      add_edge(of_, now_, each.damper, each.sign, s[index_of_y(each.damper)], s);
     jump(s);
     if (conditions_.empty()) return;
     earlier /= double(conditions_.size());
@@ -190,11 +201,17 @@ class RigidSaltation {
   }
 
  private:
-  // What sets the time of an event: a number of the state that comes to zero, at a rate; or (1 + sigma) x''
-  // that comes to the edge of a band, where `index` is 0. No condition sets the time at which a run begins.
+  // What sets the time of an event: a number of the state that comes to zero, at a rate; or, where `index` is
+  // 0, (1 + sigma)(x'' + K q) of a damper that comes to the edge of its band. No condition sets the time at
+  // which a run begins.
   struct Condition {
     std::size_t index;
     double rate;
+    std::size_t damper = 0;
+  };
+  struct Edge {
+    std::size_t damper;
+    int sign;
   };
 
   // Finds the coefficients of (M13.23) and (M13.24), which is (M13.7) for one mass.
@@ -208,53 +225,103 @@ class RigidSaltation {
       if (now_.masses[i].joins) share_[i] = its.nu / joined_mass;
     }
   }
+  // Finds the touches and ends of contacts with compliant walls.
+  void find_edges(bool run_begins) {
+    edges_.clear();
+    if (of_.rigid) return;
+    for (std::size_t i = 0; i < now_.masses.size(); ++i) {
+      const MassesAlongRun::Mass& mass = now_.masses[i];
+      if (mass.meets) edges_.push_back({i, 1});
+      if (!run_begins && mass.wall_before != 0 && mass.wall == 0) edges_.push_back({i, -1});
+    }
+  }
   void find_conditions(double time) {
     conditions_.clear();
     all_stay_ = false;
-    for (const MotionChain::Impact& impact : now_.impacts)
-      conditions_.push_back({index_of_y(std::size_t(impact.damper)), impact.w});
+    if (of_.rigid)
+      for (const MotionChain::Impact& impact : now_.impacts)
+        conditions_.push_back({index_of_y(std::size_t(impact.damper)), impact.w});
+    // Beside the jump of the wall's force, an edge lets go whom friction cannot hold against that jump.
+    bool some_let_go = false;
+    for (std::size_t i = 0; i < now_.masses.size() && !edges_.empty(); ++i) {
+      const MassesAlongRun::Mass& mass = now_.masses[i];
+      if (!mass.held_before) continue;
+      some_let_go = some_let_go || !mass.held;
+      if (of_.dampers[i].holding > of_.dampers[i].friction) note_margin(distance_from_band(i));
+    }
+    if (some_let_go)
+      for (const Edge& each : edges_)
+        conditions_.push_back({index_of_y(each.damper), now_.masses[each.damper].w});
     if (!conditions_.empty()) return;
     // Stops (M13.29), (M13.30).
-    all_stay_ = true;
+    all_stay_ = edges_.empty();
     for (std::size_t i = 0; i < now_.masses.size(); ++i) {
       const MassesAlongRun::Mass& mass = now_.masses[i];
       // One that joins its wall at another's stop has chattered there, and no speed of its own sets a time.
       const bool turns = mass.slides_before != 0 && mass.slides == -mass.slides_before;
-      const bool holds = mass.slides_before != 0 && mass.wall != 0 && !mass.joins_place;
+      const bool holds = mass.slides_before != 0 && mass.held && !mass.joins_place;
       if (!turns && !holds) continue;
-      all_stay_ = all_stay_ && mass.wall != 0;
-      const OfDamper& its = of_.dampers[i];
+      all_stay_ = all_stay_ && mass.held;
       const double rate = rates_before_[index_of_w(i)];
       conditions_.push_back({index_of_w(i), rate});
-      double margin = std::fabs(rate);
-      if (its.holding > its.friction) {
-        const double own = rates_after_[index_of_w(i)];  // 0 if it is held
-        const double held = rates_after_[1] + its.nu / (now_.joined_mass() + its.nu) * own;  // x'', if it is
-        margin = std::min(margin, std::fabs(std::fabs(held + of_.weight) - its.holding));
-      }
-      note_margin(margin);
+      note_margin(std::fabs(rate));
+      if (of_.dampers[i].holding > of_.dampers[i].friction) note_margin(distance_from_band(i));
     }
-    if (!conditions_.empty()) return;
-    // Releases (M13.31), at which the rates jump only where phi_s > phi (M13.32). Whoever is let go at one
-    // instant, it is the same condition.
+    if (!conditions_.empty()) {
+      if (!edges_.empty()) all_.one_sided = true;
+      return;
+    }
+    find_release(time);
+  }
+  // Releases (M13.31), at which the rates jump only where phi_s > phi (M13.32). Of several that are let go at
+  // one instant the one that comes to its edge lets the others go by that jump. Those that come to their
+  // edges together do so by the same condition, unless walls push one of them.
+  void find_release(double time) {
+    std::optional<std::size_t> first;
+    double nearest = 0;
     for (std::size_t i = 0; i < now_.masses.size(); ++i) {
       const MassesAlongRun::Mass& mass = now_.masses[i];
       const OfDamper& its = of_.dampers[i];
-      if (mass.wall_before == 0 || mass.wall != 0 || !(its.holding > its.friction)) continue;
-      const double by_force = of_.force.amplitude * of_.force.frequency * of_.force.phase(time).cos;
-      conditions_.push_back({0, by_force + change_in_band(rates_before_)});
-      note_margin(std::fabs(conditions_.back().rate));
-      break;
+      if (!mass.held_before || mass.held || !(its.holding > its.friction)) continue;
+      const double needs = std::fabs(rates_before_[1] + of_.weight + now_.wall_spring(i));
+      const double off = std::fabs(needs - its.holding);
+      const auto pushed = [&](std::size_t j) { return !of_.rigid && now_.masses[j].wall != 0; };
+      if (first && off <= 1e-12 * its.holding && nearest <= 1e-12 * its.holding &&
+          (pushed(i) || pushed(*first)))
+        all_.one_sided = true;
+      if (first && nearest <= off) continue;
+      first = i;
+      nearest = off;
     }
+    if (!first) return;
+    const double by_force = of_.force.amplitude * of_.force.frequency * of_.force.phase(time).cos;
+    conditions_.push_back({0, by_force + change_in_band(*first, rates_before_), *first});
+    note_margin(std::fabs(conditions_.back().rate));
   }
   void note_margin(double margin) {
     if (!(all_.stop_margin && *all_.stop_margin <= margin)) all_.stop_margin = margin;
   }
-  // The change of (1 + sigma) x'' without that of the force.
-  double change_in_band(const ChangeOfState& s) const {
+  // How far from phi_s the force is with which a mass has to be held just after an event.
+  double distance_from_band(std::size_t i) const {
+    const OfDamper& its = of_.dampers[i];
+    const double own = rates_after_[index_of_w(i)];                                      // 0 if it is held
+    const double held = rates_after_[1] + its.nu / (now_.joined_mass() + its.nu) * own;  // x'', if it is
+    return std::fabs(std::fabs(held + of_.weight + now_.wall_spring(i)) - its.holding);
+  }
+  // The change of (1 + sigma)(x'' + K q) of a damper that is held, before the event and without that of the
+  // force.
+  double change_in_band(std::size_t damper, const ChangeOfState& s) const {
     double change = -2 * of_.zeta * s[1] - s[0];
-    for (std::size_t i = 0; i < of_.dampers.size(); ++i)
-      change += of_.dampers[i].nu * of_.dampers[i].drag * s[index_of_w(i)];
+    const auto in_wall = [&](std::size_t i) { return !of_.rigid && now_.masses[i].wall_before != 0; };
+    for (std::size_t i = 0; i < of_.dampers.size(); ++i) {
+      if (now_.masses[i].held_before) continue;
+      const OfDamper& its = of_.dampers[i];
+      double force = its.drag * s[index_of_w(i)];
+      if (in_wall(i)) force += its.damping * s[index_of_w(i)] + its.stiffness * s[index_of_y(i)];
+      change += its.nu * force;
+    }
+    if (in_wall(damper))
+      change += now_.joined_mass_before() * (of_.dampers[damper].stiffness * s[index_of_y(damper)]);
     return change;
   }
   // Multiplies a change by the derivative D of the jump, (M13.23) and (M13.24).
@@ -273,8 +340,8 @@ class RigidSaltation {
     for (std::size_t i = 0; i < gain_.size(); ++i) {
       const MassesAlongRun::Mass& mass = now_.masses[i];
       double &y = s[index_of_y(i)], &w = s[index_of_w(i)];
-      w = mass.wall != 0 ? 0 : w - v;
-      if (mass.wall == 0) y -= x;
+      w = mass.held ? 0 : w - v;
+      if (!mass.held) y -= x;
       if (mass.joins_place) y = 0;
     }
   }
@@ -283,9 +350,11 @@ class RigidSaltation {
   const MassesAlongRun& now_;
   Carried& all_;
   std::vector<double> gain_, share_;  // nu (1+e) of those with an impulse, nu of those that join; over masses
+  std::vector<Edge> edges_;
   std::vector<Condition> conditions_;
   bool all_stay_ = false;  // the event is stops of masses that are held from then on, in whatever order
   std::optional<double> last_time_;
+  bool last_acts_ = false;                            // whether the event then had conditions
   ChangeOfState rates_before_, rates_after_, shift_;  // F^-, F^+ and F^+ - D F^-
 };
 
@@ -305,26 +374,25 @@ class VariationalEquations {
 
   Carried carry() {
     for (std::size_t n = 0; n < run_.chain.motions.size(); ++n) {
-      if (of_.rigid) {
-        pass_rigid_event(n);
+      if (of_.plain_contacts) {
+        pass_contacts(n);
       } else {
-        pass_compliant_events(n);
+        pass_event(n);
       }
       const MotionChain::Motion& motion = run_.chain.motions[n];
       find_coupled();
       if (coupled_.empty()) {
         pass_flight(motion);
-      } else if (of_.rigid || coupled_.size() > 1) {
+      } else if (!is_contact_alone()) {
         pass_coupled(motion);
-      } else if (const UnforcedModes& modes = *of_.dampers[now_.in_contact.front()].modes; modes.coupled) {
+      } else if (const UnforcedModes& modes = *of_.dampers[coupled_[0].damper].modes; modes.coupled) {
         pass_contact<ContactWithoutModes<double, Unforced>>(modes, motion);
       } else {
         pass_contact<Contact<double, Unforced>>(modes, motion);
       }
       if (of_.rigid)
         for (std::size_t i = 0; i < now_.masses.size(); ++i)
-          if (now_.masses[i].wall == 0)
-            now_.masses[i].w += now_.v - motion.v - now_.pull(i) * motion.duration;
+          if (!now_.masses[i].held) now_.masses[i].w += now_.v - motion.v - now_.pull(i) * motion.duration;
       now_.pass(motion);
     }
     if (along_) {
@@ -356,11 +424,11 @@ class VariationalEquations {
 
   // Applies the event between the motion n and the one before, if there is one: to the changes its saltation
   // matrix (M13.4), to the state its jump.
-  void pass_rigid_event(std::size_t n) {
-    if (!now_.comes_to_rigid_event(n)) return;
+  void pass_event(std::size_t n) {
+    if (!now_.comes_to_event(n)) return;
     const double time = run_.chain.motions[n].begin;
     saltation_.begin(time);
-    now_.pass_rigid_event(n);
+    now_.pass_event(n);
     saltation_.find(time, n == 0);
     carry_all(
         1, [&](ChangeOfState& s, int) { saltation_.apply(s, [&] { return change_of_force(s, time)[0]; }); });
@@ -369,34 +437,26 @@ class VariationalEquations {
     for (std::size_t i = 0; i < now_.masses.size(); ++i) {
       const MassesAlongRun::Mass& mass = now_.masses[i];
       if (mass.joins) dimensions_lost_[i] = mass.joins_place || mass.meets ? 2 : 1;
-      if (mass.wall != 0) lost += dimensions_lost_[i];
+      if (mass.held) lost += dimensions_lost_[i];
     }
     all_.lost = std::max(all_.lost, lost);
   }
-  // Applies the touches and ends of contacts between the motion n and the one before (M13.25).
-  void pass_compliant_events(std::size_t n) {
-    now_.come_to_compliant_events(n);
+  // Applies the plain touches and ends of contacts between the motion n and the one before (M13.25).
+  void pass_contacts(std::size_t n) {
+    now_.come_to_contacts(n);
     for (std::size_t i = 0; i < now_.masses.size(); ++i)
       if (now_.ends_contact(i, n)) apply_edge(i, -1);
     for (const MotionChain::Impact& impact : now_.impacts) apply_edge(std::size_t(impact.damper), 1);
-    now_.pass_compliant_events(n);
+    now_.pass_contacts(n);
   }
-  // Applies the saltation matrix of touch (sign 1) or end (-1) of a contact (M13.25).
   void apply_edge(std::size_t damper, int sign) {
-    const OfDamper& its = of_.dampers[damper];
-    const double on_primary = sign * its.nu * its.damping, on_own = -sign * (1 + its.nu) * its.damping;
-    carry_all(1, [&](ChangeOfState& s, int) {
-      const double y = s[index_of_y(damper)];
-      s[1] += on_primary * y;
-      for (std::size_t i = 0; i < now_.masses.size(); ++i)
-        s[index_of_w(i)] += (i == damper ? on_own : -on_primary) * y;
-    });
+    carry_all(1, [&](ChangeOfState& s, int) { add_edge(of_, now_, damper, sign, s[index_of_y(damper)], s); });
   }
 
   // In how many pieces a motion is taken. rate_of_loss: minus the divergence, the rate at which volumes
   // contract. A propagator by squaring (M13.27) loses digits where it contracts them much.
-  int pieces_for(double rate_of_loss, double duration) {
-    if (!after_step_ && coupled_.size() < 2) return 1;
+  int pieces_for(double rate_of_loss, double duration, bool by_squaring = false) {
+    if (!after_step_ && !by_squaring) return 1;
     const double loss = rate_of_loss * duration;
     if (is_lost(loss)) all_.lost = std::max(all_.lost, 2 * std::max<std::size_t>(1, now_.in_contact.size()));
     return pieces_of(loss);
@@ -416,7 +476,7 @@ class VariationalEquations {
       s[0] = p.c * x + p.s * v;
       s[1] = p.v * v - spring * x;
       for (std::size_t i = 0; i < now_.masses.size(); ++i) {
-        if (now_.masses[i].wall != 0) continue;
+        if (now_.masses[i].held) continue;
         double &y = s[index_of_y(i)], &w = s[index_of_w(i)];
         y = (y - (p.c1 * x + p.s1 * v)) + duration * w;
         w += spring * x - slowed * v;
@@ -434,7 +494,7 @@ class VariationalEquations {
   // are contacts without a force, each from a unit state.
   template <class InContact>
   void pass_contact(const UnforcedModes& modes, const MotionChain::Motion& motion) {
-    const std::size_t in = now_.in_contact.front();
+    const std::size_t in = coupled_[0].damper;
     const OfDamper& its = of_.dampers[in];
     const auto from = [&](const State<double>& start) { return InContact(modes, 0, start, Wall::left); };
     const int pieces = pieces_for(2 * of_.zeta + (1 + its.nu) * its.damping, motion.duration);
@@ -461,20 +521,30 @@ class VariationalEquations {
           });
     }
   }
-  // Sets coupled_ to the masses that push compliant walls or slide in a fluid.
+  // Sets coupled_ to the masses that push compliant walls, in which none holds them, or slide in a fluid.
   void find_coupled() {
     coupled_.clear();
     for (std::size_t i = 0; i < now_.masses.size(); ++i)
-      if (of_.rigid ? is_in_fluid(i) : now_.masses[i].wall != 0) coupled_.push_back(i);
+      if (const OfDamper& its = of_.dampers[i]; is_coupled(i)) {
+        const bool pushes = now_.masses[i].wall != 0;
+        coupled_.push_back(
+            {i, its.nu, pushes ? its.stiffness : 0, pushes ? its.damping + its.drag : its.drag});
+      }
   }
-  bool is_in_fluid(std::size_t i) const { return now_.masses[i].wall == 0 && of_.dampers[i].drag != 0; }
+  bool is_coupled(std::size_t i) const {
+    return !now_.masses[i].held && (now_.masses[i].wall != 0 || of_.dampers[i].drag != 0);
+  }
+  // Whether all that is coupled is one mass that pushes its wall, beside the primary mass alone.
+  bool is_contact_alone() const {
+    return coupled_.size() == 1 && now_.masses[coupled_[0].damper].wall != 0 &&
+           of_.dampers[coupled_[0].damper].drag == 0 && now_.joined_mass() == 1;
+  }
   // Carries changes through a motion in which several masses push compliant walls, or some slide in a fluid.
   void pass_coupled(const MotionChain::Motion& motion) {
-    const double mass = of_.rigid ? now_.joined_mass() : 1;
+    const double mass = now_.joined_mass();
     double rate_of_loss = 2 * of_.zeta / mass;
-    for (const std::size_t i : coupled_)
-      rate_of_loss += (1 + of_.dampers[i].nu / mass) * (of_.dampers[i].damping + of_.dampers[i].drag);
-    const int pieces = pieces_for(rate_of_loss, motion.duration);
+    for (const Coupled& each : coupled_) rate_of_loss += (1 + each.nu / mass) * each.damping;
+    const int pieces = pieces_for(rate_of_loss, motion.duration, true);
     const double duration = motion.duration / pieces;
     const JointPropagator propagator(of_, coupled_, mass, duration, along_ != nullptr);
     carry_all(pieces, [&](ChangeOfState& s, int piece) {
@@ -486,7 +556,7 @@ class VariationalEquations {
   // Carries a change of y and y' of all masses that fly, x and v being those of x and x' before.
   void carry_free(ChangeOfState& s, double duration, double x, double v) const {
     for (std::size_t i = 0; i < now_.masses.size(); ++i) {
-      if (now_.masses[i].wall != 0 || is_in_fluid(i)) continue;
+      if (now_.masses[i].held || is_coupled(i)) continue;
       s[index_of_y(i)] += duration * s[index_of_w(i)] - (s[0] - x - duration * v);
       s[index_of_w(i)] -= s[1] - v;
     }
@@ -520,10 +590,11 @@ class VariationalEquations {
       s[0] += sum[0];
       s[1] += sum[1];
       for (std::size_t i = 0; i < now_.masses.size(); ++i) {
+        if (now_.masses[i].held) continue;
         if (now_.masses[i].wall == 0) {
           s[index_of_y(i)] -= sum[0];
           s[index_of_w(i)] -= sum[1];
-        } else if (!of_.rigid) {
+        } else {
           s[index_of_y(i)] += sum[2];
           s[index_of_w(i)] += sum[3];
         }
@@ -540,9 +611,9 @@ class VariationalEquations {
   const std::function<void()>& after_step_;
   // y is not followed, nor y' with compliant walls, where no matrix depends on them.
   MassesAlongRun now_;
-  std::vector<std::size_t> coupled_;
+  std::vector<Coupled> coupled_;
   Carried all_;
-  RigidSaltation saltation_;
+  Saltation saltation_;
   std::vector<std::size_t> dimensions_lost_;  // by each mass while it sticks or is held
 };
 

@@ -36,10 +36,8 @@ struct Carried {
   // Largest number of dimensions lost at one time: two for each mass that sticks, or whose contact is damped
   // by more than exp(-36) 4096 times.
   std::size_t lost = 0;
-  // Whether several masses met rigid walls at one instant. The derivative is then that of changes that keep
-  // them together.
-  bool one_sided = false;
   // As in PoincareImage.
+  bool one_sided = false;
   std::optional<double> stop_margin;
 };
 // The derivatives of the final state by omega_f and by f0, for a fixed end time, and its rates.

@@ -498,10 +498,10 @@ class EngineWithComponents : protected Walls {
 
   void settle() {
     static_cast<Engine&>(*this).settle();
-    if constexpr (requires { observer_.settled(std::int32_t{}, PlaceInCavity{}, false, 0.0); })
+    if constexpr (requires { observer_.settled(std::int32_t{}, PlaceInCavity{}, false, 0.0, false); })
       for (std::size_t i = 0; i < masses_.size(); ++i)
         observer_.settled(masses_.number[i], masses_.place(i, masses_.u[i], masses_.u1[i]), each_[i].still,
-                          double(each_[i].slides));
+                          double(each_[i].slides), touches(i));
   }
 
   bool lists_dampers_;

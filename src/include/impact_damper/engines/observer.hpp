@@ -17,9 +17,10 @@ namespace impact_damper {
 // An observer of a closed-form engine may also have passed(begin, duration, end). It is then called for each
 // motion in turn, in the engine's own numbers: when it began, how long it lasted, and the state in which it
 // ended, before the event at its end changes it; with several dampers only x and x' of that state are set.
-// With friction, weight or drag one of such an engine may have settled(damper, place, held, slides), too,
-// called for each damper when a run begins and after each event: its place then, whether it is held, and the
-// sign of y' with which friction acts on it, 0 where it does not slide.
+// With friction, weight or drag one of such an engine may have settled(damper, place, held, slides, pushes),
+// too, called for each damper when a run begins and after each event: its place then, whether it is held, the
+// sign of y' with which friction acts on it, 0 where it does not slide, and whether it pushes a compliant
+// wall, in which it may slide or be held.
 template <class T>
 concept RunObserver = requires(T observer, const T asked, double number, Wall wall) {
   { asked.wants_half_cycles() } -> std::same_as<bool>;

@@ -41,6 +41,7 @@ struct MotionChain {
     PlaceInCavity place;
     bool held;
     double slides;
+    bool pushes;
   };
   std::vector<Motion> motions;
   std::vector<Impact> impacts;
@@ -66,8 +67,8 @@ class Recorder {
   void passed(double begin, double duration, const State<double>& end) {
     if (chain_) chain_->motions.push_back({begin, duration, end.x, end.v});
   }
-  void settled(std::int32_t damper, const PlaceInCavity& place, bool held, double slides) {
-    if (chain_) chain_->settled.push_back({chain_->motions.size(), damper, place, held, slides});
+  void settled(std::int32_t damper, const PlaceInCavity& place, bool held, double slides, bool pushes) {
+    if (chain_) chain_->settled.push_back({chain_->motions.size(), damper, place, held, slides, pushes});
   }
 
   // The time of the next history sample; infinity while none is known. A half cycle may open a window that

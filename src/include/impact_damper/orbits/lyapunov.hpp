@@ -24,8 +24,9 @@ struct LyapunovExponents {
   // square root of ten. It assumes that the motion forgets its state within one block. None for less than ten
   // periods.
   std::vector<double> standard_errors;
-  // Whether several masses met rigid walls at one instant in these periods. There is no derivative then: the
-  // exponents are those of changes that keep them together. Not written to files.
+  // Whether several masses met rigid walls at one instant in these periods, or with friction other events
+  // coincided. There is no derivative then: the exponents are those of changes that keep them together. Not
+  // written to files.
   bool one_sided = false;
 };
 

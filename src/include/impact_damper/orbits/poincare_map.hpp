@@ -61,16 +61,17 @@ struct PoincareImage {
   // Numbers of the dampers with neither impact nor contact while others have impacts. With friction, of those
   // that are held all the time while others have impacts, or where left and right differ by weight.
   std::vector<std::size_t> idle;
-  // Whether several masses met rigid walls at one instant. The derivative is then that of changes that keep
-  // them together.
+  // Whether several masses met rigid walls at one instant, or with friction other events coincide (13.11).
+  // The derivative is then that of changes that keep them together.
   bool one_sided = false;
   // How near the motion is to grazing, where the derivative by s has no bound (rigid walls) or jumps
   // (compliant walls), and to a coincidence of impacts. Each is absent where the motion has no such event.
   std::optional<double> slowest_impact;  // least speed; complete chattering counts with its first impact
   std::optional<double> nearest_miss;    // least distance from a wall at which a mass turns back in flight
   // With friction: how near a mass that stops or is let go comes to where there is no derivative by s. The
-  // least of |y''| just before a stop and, where phi_s > phi, of the distance of |x'' + gamma| from phi_s
-  // just after, and of |(1 + sigma) x'''| at a release (M13.31).
+  // least of |y''| just before a stop and, where phi_s > phi, of the distance of |x'' + gamma + K q| from
+  // phi_s just after, for other masses that are held also just after touches and ends of contacts with
+  // compliant walls, and of |(1 + sigma) x'''| at a release (M13.31).
   std::optional<double> stop_margin;
   // Rigid walls, several dampers: the least time between two successive impacts of different dampers; the
   // first follows the last, as on an orbit. Where they change their order the map jumps.
@@ -87,15 +88,11 @@ inline constexpr std::size_t most_dampers_with_changes = 100;
 // condition, which is not used, is at rest. Throws InvalidArguments if n < 1.
 Scene scene_of_map(Scene scene, int half_periods);
 
-// Why the derivatives of runs of a scene are not known: it or the engine is not valid for steady motions
-// (steady_state.hpp), or it has friction, weight or drag, and the engine is not restitution.
-std::vector<Problem> problems_of_derivatives(const Scene& scene, const Engine& engine);
-
 // The map H^n of a scene, n = half_periods, and its derivatives.
 class PoincareMap {
  public:
   // half_periods: n >= 1, even with weight, for which (M13.1) has no mirror. Throws InvalidArguments if it is
-  // not, or problems_of_derivatives() finds any. The scene's initial condition and its end are not used.
+  // not, or problems_of(scene, engine) finds any. The scene's initial condition and its end are not used.
   PoincareMap(const Scene& scene, const Engine& engine, int half_periods);
 
   // Which derivatives an image has. With none, it has its state and its idle dampers only.
