@@ -241,6 +241,36 @@ TEST_CASE("the word that was meant is named only if it is near") {
   CHECK(!nearest("q1", known));  // no letter of it is right
 }
 
+TEST_CASE("a word that ends in a unit never means one with another unit or without one") {
+  const std::vector<std::string_view> known{"x_mm", "until_millimetres", "until_seconds", "mass",
+                                            "mass_ratio"};
+  CHECK(!nearest("x_cm", known));
+  CHECK(!nearest("x_m", known));
+  CHECK(!nearest("until_centimetres", known));
+  CHECK(!nearest("until_milliseconds", known));
+  CHECK(!nearest("mass_g", known));
+  CHECK(nearest("y_mm", known) == "x_mm");
+  CHECK(nearest("until_millimeters", known) == "until_millimetres");
+  CHECK(nearest("until_secon", known) == "until_seconds");
+}
+
+TEST_CASE("a word that is the last part of several names may mean each of them") {
+  const std::vector<std::string_view> known{"exciting_frequency", "mass", "natural_frequency", "x0"};
+  CHECK(did_you_mean("frequency", known) == ", did you mean exciting_frequency or natural_frequency?");
+  CHECK(did_you_mean("Frequency", known, "'") ==
+        ", did you mean 'exciting_frequency' or 'natural_frequency'?");
+  CHECK(did_you_mean("natural_freqency", known) == ", did you mean natural_frequency?");
+  CHECK(did_you_mean("frequency", {"--force-frequency", "--x0"}) == ", did you mean --force-frequency?");
+  CHECK(did_you_mean("colour", known) == "");
+}
+
+TEST_CASE("options of the command line and keys of plans are known by each other's names") {
+  CHECK(did_you_mean("keep", {"grid", "quantities"}) == ", did you mean quantities?");
+  CHECK(did_you_mean("vary", {"grid", "quantities"}) == ", did you mean grid?");
+  CHECK(did_you_mean("--quantities", {"--vary", "--keep"}) == ", did you mean --keep?");
+  CHECK(did_you_mean("--grid", {"--vary", "--keep"}) == ", did you mean --vary?");
+}
+
 TEST_CASE("capitals decide which word was meant only between words that are equally near without them") {
   const std::vector<std::string_view> known{"v0", "x0", "y0", "mass_ratio", "restitution"};
   CHECK(nearest("X0", known) == "x0");

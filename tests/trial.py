@@ -59,7 +59,8 @@ def call(*words, code=0, **more):
 
 def start(*words, cwd=folder, **more):
     """The program as a process that is not waited for."""
-    return subprocess.Popen([program, *map(str, words)], cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **more)
+    return subprocess.Popen([program, *map(str, words)], cwd=cwd, text=True,
+                            **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **more})
 
 
 def read(name):

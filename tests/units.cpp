@@ -48,6 +48,66 @@ TEST_CASE("a scene in units becomes the dimensionless one that is worked out by 
   CHECK(problems_of(mast()).empty());
 }
 
+TEST_CASE("a natural frequency stands for the stiffness, and only one of the two may be given") {
+  SceneInUnits scene = mast();
+  scene.natural_frequency = 10 / std::acos(-1.0);  // 20 rad/s
+  CHECK(problems_of(scene).size() == 1);
+  CHECK(problems_of(scene)[0].message == "either it or natural_frequency must be given, got both");
+  scene.stiffness.reset();
+  CHECK(problems_of(scene).empty());
+  CHECK(*stiffness_of(scene) == near(16000));
+  CHECK(dimensionless(scene).force_frequency == near(dimensionless(mast()).force_frequency));
+  CHECK(dimensionless(scene).damper().wall_stiffness == near(25000));
+  scene.mass = 160;
+  CHECK(*stiffness_of(scene) == near(64000));
+  scene.natural_frequency = 1e9;
+  CHECK(problems_of(scene)[0].field == "natural_frequency");
+  scene.natural_frequency.reset();
+  CHECK(problems_of(scene)[0].field == "stiffness");
+}
+
+TEST_CASE("a number that is set takes the place of the one that it stands for") {
+  SceneInUnits scene = mast();
+  set_number(scene, &SceneInUnits::natural_frequency, 3);
+  set_number(scene, &SceneInUnits::damping_ratio, 0.1);
+  CHECK(!scene.stiffness);
+  CHECK(!scene.damping);
+  CHECK(problems_of(scene).empty());
+  set_number(scene, &SceneInUnits::stiffness, 5);
+  CHECK(scene.stiffness == 5);
+  CHECK(!scene.natural_frequency);
+}
+
+TEST_CASE("a number is read with the units that engineers write behind it") {
+  const auto read = [](const char* text, Dimension dimension) { return parse_quantity(text, dimension); };
+  CHECK(read("12mm", Dimension::length) == 12);
+  CHECK(read("1.2 cm", Dimension::length) == 12);
+  CHECK(read("-0.012m", Dimension::length) == -12);
+  CHECK(read("2in", Dimension::length) == near(50.8));
+  CHECK(read("12000um", Dimension::length) == 12);
+  CHECK(read("1e3ms", Dimension::time) == 1);
+  CHECK(read("2min", Dimension::time) == 120);
+  CHECK(read("+0.2m/s", Dimension::velocity) == 200);
+  CHECK(read("800g", Dimension::mass) == 0.8);
+  CHECK(read("16kN/m", Dimension::stiffness) == 16000);
+  CHECK(read("16N/mm", Dimension::stiffness) == 16000);
+  CHECK(read("3.2 N s/m", Dimension::damping) == 3.2);
+  CHECK(read("9.81m/s^2", Dimension::acceleration) == 9.81);
+  CHECK(read("4.2Hz", Dimension::frequency) == 4.2);
+  CHECK(read("30deg", Dimension::inclination) == 30);
+  for (const char* const wrong :
+       {"12", "mm", "", "12kg", "12mmm", "1 2mm", "nanmm", "infmm", "12MM", "0x1mm", "1e999mm"}) {
+    CAPTURE(wrong);
+    CHECK(!read(wrong, Dimension::length));
+  }
+  for (const UnitField& field : unit_fields) {
+    CAPTURE(field.name);
+    if (field.dimension == Dimension::ratio) continue;
+    CHECK(parse_quantity("7" + std::string(unit_of(field.dimension, true)), field.dimension) == 7);
+    CHECK(written_units(field.dimension) != "");
+  }
+}
+
 TEST_CASE("the scales are those of the primary system and the clearance") {
   const Scales scales = scales_of(mast());
   CHECK(scales.of(Dimension::time) == near(0.05));

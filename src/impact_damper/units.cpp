@@ -46,6 +46,40 @@ const UnitRow& row_of(Dimension dimension) {
   return *std::ranges::find(unit_table, dimension, &UnitRow::dimension);
 }
 
+// A unit that a number may be written with: so many times, divided by so much, unit_of(dimension, true).
+struct WrittenUnit {
+  std::string_view name;  // without blanks
+  Dimension dimension;
+  double times = 1, divided_by = 1;
+};
+constexpr auto written_unit_table = std::to_array<WrittenUnit>({
+    {"mm", length},
+    {"um", length, 1, 1000},
+    {"cm", length, 10},
+    {"m", length, 1000},
+    {"in", length, 25.4},
+    {"s", time},
+    {"ms", time, 1, 1000},
+    {"min", time, 60},
+    {"mm/s", velocity},
+    {"cm/s", velocity, 10},
+    {"m/s", velocity, 1000},
+    {"kg", mass},
+    {"g", mass, 1, 1000},
+    {"t", mass, 1000},
+    {"N", force},
+    {"kN", force, 1000},
+    {"Hz", frequency},
+    {"N/m", stiffness},
+    {"N/mm", stiffness, 1000},
+    {"kN/m", stiffness, 1000},
+    {"Ns/m", damping},
+    {"Ns/mm", damping, 1000},
+    {"m/s^2", acceleration},
+    {"mm/s^2", acceleration, 1, 1000},
+    {"deg", inclination},
+});
+
 constexpr double metres_per_millimetre = 1e-3;
 Basis basis_of(const Scales& scales, double length_unit) {
   return {scales.mass, scales.stiffness, std::sqrt(scales.mass / scales.stiffness),
@@ -109,15 +143,27 @@ void set_laws(Scene& made, const SceneInUnits& scene, const Scales& scales) {
   }
 }
 
-bool is_needed(std::string_view name) {
-  return name == "mass" || name == "stiffness" || name == "secondary_mass" || name == "clearance";
+bool is_needed(const SceneInUnits& scene, std::string_view name) {
+  return name == "mass" || (name == "stiffness" && !scene.natural_frequency) || name == "secondary_mass" ||
+         name == "clearance";
+}
+
+// Numbers of which one stands for the other.
+constexpr std::array<std::array<std::optional<double> SceneInUnits::*, 2>, 2> alternatives{
+    {{&SceneInUnits::damping, &SceneInUnits::damping_ratio},
+     {&SceneInUnits::stiffness, &SceneInUnits::natural_frequency}}};
+std::string_view field_name(std::optional<double> SceneInUnits::*number) {
+  return std::ranges::find_if(unit_fields, [&](const UnitField& field) { return field.number.is(number); })
+      ->name;
 }
 
 }  // namespace
 
-constexpr std::array<UnitField, 21> unit_fields{{
+constexpr std::array<UnitField, 22> unit_fields{{
     {"mass", &SceneInUnits::mass, some, mass, "", "mass M of the primary system"},
     {"stiffness", &SceneInUnits::stiffness, some, stiffness, "", "stiffness K of its spring"},
+    {"natural_frequency", &SceneInUnits::natural_frequency, some, frequency, "",
+     "its natural frequency, in place of the stiffness"},
     {"secondary_mass", &DamperInUnits::secondary_mass, some, mass, "mass_ratio", "secondary mass"},
     {"clearance", &DamperInUnits::clearance, some, length, "clearance",
      "clearance of the secondary mass, epsilon"},
@@ -159,6 +205,22 @@ constexpr std::array<UnitField, 21> unit_fields{{
 std::string_view unit_of(Dimension dimension, bool in_units) {
   return in_units ? row_of(dimension).in_units : row_of(dimension).dimensionless;
 }
+std::optional<double> parse_quantity(std::string_view text, Dimension dimension) {
+  const std::size_t end = std::min(text.find_first_not_of("+-.0123456789eE"), text.size());
+  const auto number = parse_number(text.substr(0, end));
+  if (!number) return std::nullopt;
+  std::string unit(text.substr(end));
+  std::erase(unit, ' ');
+  for (const WrittenUnit& each : written_unit_table)
+    if (each.dimension == dimension && each.name == unit) return *number * each.times / each.divided_by;
+  return std::nullopt;
+}
+std::string written_units(Dimension dimension) {
+  std::vector<std::string_view> names;
+  for (const WrittenUnit& each : written_unit_table)
+    if (each.dimension == dimension) names.push_back(each.name);
+  return listed(names, "or");
+}
 std::string with_unit(const std::string& number, std::string_view unit) {
   return unit.empty() ? number : number + ' ' + std::string(unit);
 }
@@ -177,9 +239,10 @@ std::vector<Problem> problems_of(const SceneInUnits& scene) {
   std::vector<Problem> problems;
   const auto check = [&](const std::string& name, const UnitField& field,
                          const std::optional<double>& value) {
-    if (!value && is_needed(field.name))
-      problems.push_back(
-          {name, "missing, a value must be given in " + std::string(unit_of(field.dimension, true))});
+    if (!value && is_needed(scene, field.name))
+      problems.push_back({name, "missing, a value must be given in " +
+                                    std::string(unit_of(field.dimension, true)) +
+                                    (field.name == "stiffness" ? ", or natural_frequency in Hz" : "")});
     if (value && !field.range.allows(*value))
       problems.push_back({name, field.range.describe("must be") + ", got " + number_text(*value)});
   };
@@ -200,11 +263,16 @@ std::vector<Problem> problems_of(const SceneInUnits& scene) {
   if (scene.dampers.empty()) problems.push_back({"dampers", "must be at least one, got 0"});
   if (!(scene.spring.cubic >= 0))
     problems.push_back({"spring.cubic", "must be >= 0, got " + number_text(scene.spring.cubic)});
-  if (scene.damping && scene.damping_ratio)
-    problems.push_back({"damping", "either it or damping_ratio must be given, got both"});
+  for (const auto& [one_of_two, other] : alternatives)
+    if (scene.*one_of_two && scene.*other)
+      problems.push_back({std::string(field_name(one_of_two)),
+                          filled("either it or {} must be given, got both", field_name(other))});
   if (!scene.until_seconds && !scene.until_millimetres)
     problems.push_back({"until_seconds", "until_seconds, until_millimetres or both must be given"});
   if (!problems.empty()) return problems;
+  if (const double made = *stiffness_of(scene); !some.allows(made))
+    return {{"natural_frequency",
+             some.describe("with the mass must make a stiffness") + " N/m, got " + number_text(made)}};
 
   for (const Problem& problem : problems_of(dimensionless(scene))) {
     const bool of_the_list = problem.field == "dampers";
@@ -215,8 +283,22 @@ std::vector<Problem> problems_of(const SceneInUnits& scene) {
   return problems;
 }
 
+void set_number(SceneInUnits& scene, const NumberInUnits& number, double value) {
+  for (const auto& [one, other] : alternatives) {
+    if (number.is(one)) (scene.*other).reset();
+    if (number.is(other)) (scene.*one).reset();
+  }
+  number.in(scene) = value;
+}
+
+std::optional<double> stiffness_of(const SceneInUnits& scene) {
+  if (!scene.natural_frequency || !scene.mass) return scene.stiffness;
+  const double omega = 2 * std::numbers::pi * *scene.natural_frequency;
+  return *scene.mass * (omega * omega);
+}
+
 Scales scales_of(const SceneInUnits& scene) {
-  return {*scene.mass, *scene.stiffness, *scene.damper().clearance};
+  return {*scene.mass, *stiffness_of(scene), *scene.damper().clearance};
 }
 
 Scene dimensionless(const SceneInUnits& scene) {

@@ -28,7 +28,7 @@ parser.add_argument("--share", default="1/1")
 parser.add_argument("--only")
 options = parser.parse_args()
 
-# What takes longer than two seconds says how far it is: on a slow machine, or under the sanitizers.
+# What takes longer than ten seconds says how far it is: on a slow machine, or under the sanitizers.
 PROGRESS = re.compile(r"(verify|response|sweep): [0-9]+ (of [0-9]+|branches) [^\n]*\n|compare: (fitting|simulating|drawing)[^\n]*\n|"
                       r"design: (searched|checking) [^\n]*\n|report: (release [0-9]|simulating|recording|drawing)[^\n]*\n")
 

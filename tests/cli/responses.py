@@ -5,9 +5,12 @@ That they are right is tested in ../steady/.
 import csv
 import json
 import math
+import os
+import pty
+import re
 import signal
 
-from trial import call, demand, demand_valid, finish, faults, folder, has_its_digest, read, read_json, source, start, write
+from trial import call, demand, demand_valid, finish, folder, has_its_digest, read, read_json, source, start, write
 
 
 def respond(file, *words):
@@ -34,7 +37,7 @@ sweeps = {
     "undamped": ["--force-amplitude", 0.004, "--vary", "force_frequency=0.9:1:2", *short],  # infinite at 1
     "budget": [*forced, "--vary", "force_frequency=0.9:1.1:3", "--max-impacts", 2],
     "several": ["--scene", "boxes.json", "--vary", "force_frequency=0.95:1.05:3", "--start=-0.5:0.2", *short],
-    "units": ["--scene", source / "data/examples/mast_in_wind.json", "--vary", "exciting_frequency=3.05:3.25:3", *short],
+    "units": ["--scene", source / "data/examples/mast_in_wind.json", "--vary", "exciting_frequency=3.05Hz:3.25Hz:3", *short],
 }
 write("boxes.json", {"damping_ratio": 0.01, "force_amplitude": 0.05, "x0": 1, "until_time": 1, "dampers": [
     {"mass_ratio": 0.05, "y0": 0.5}, {"mass_ratio": 0.03, "clearance": 2, "y0": 0.3}]})
@@ -92,8 +95,8 @@ compare_units("si.csv", "units.csv", SI, "sweep", *sweeps["units"])
 basins = {
     "initial": [*forced, "--force-frequency", 0.9, "--vary", "x0=-1:1:9", "--vary", "v0=-1:1:7", "--engine", "restitution"],
     "parameters": [*forced, "--vary", "force_frequency=0.8:1.2:5", "--vary", "mass_ratio=0.05:0.1:3", *short],
-    "starts": ["--scene", source / "data/examples/mast_in_wind.json", "--vary", "initial_displacement=-20:20:3",
-               "--vary", "exciting_force=1:2:2", *short],
+    "starts": ["--scene", source / "data/examples/mast_in_wind.json", "--vary", "initial_displacement=-20mm:20mm:3",
+               "--vary", "exciting_force=1N:2N:2", *short],
 }
 for name, words in basins.items():
     document = examined(respond(f"{name}.json", "basin", *words), name)
@@ -121,7 +124,7 @@ branches = {
     "folds": [*two_impacts, "--vary", "force_frequency=0.9:2.5"],
     "flips": [*doubling, "--vary", "force_amplitude=0.05:0.12"],
     "few": [*doubling, "--vary", "force_amplitude=0.05:0.12", "--max-branches", 1, "--largest-step", 0.01],
-    "mast": ["--scene", source / "data/examples/mast_in_wind.json", "--vary", "exciting_frequency=3.09:3.0", "--start=0:0:5:0"],
+    "mast": ["--scene", source / "data/examples/mast_in_wind.json", "--vary", "exciting_frequency=3.09Hz:3.0Hz", "--start=0:0:5mm:0"],
     "chaotic": [*forced, "--force-frequency", 0.9, "--vary", "force_amplitude=0.05:0.06", "--max-periods", 20],
     "slides": ["--engine", "restitution", "--mass-ratio", 0.1, "--damping-ratio", 0.05, "--friction", 0.15, "--force-amplitude", 0.25,
                "--force-frequency", 0.8, "--x0", 1, "--y0", 0.3, "--vary", "force_frequency=0.8:0.81"],
@@ -237,16 +240,47 @@ for code, says, words in (
 respond("runs/low.json", "orbits", *asked[:-2], "--vary", "force_frequency=0.95:1.01")
 series(3, "/kind: must be sweep as in response low of the catalogue, got orbits")
 
-# Interrupted: one line that says what is left, and no file, also none half written.
-process = start("response", "basin", *forced, "--vary", "x0=-1:1:2000", "--vary", "v0=-1:1:2000", "-o", "long.json")
-while "response: " not in process.stderr.readline():  # its progress, after two seconds
-    demand(process.poll() is None, "interrupted: it has ended by itself")
-    if faults:
-        break
-process.send_signal(signal.SIGINT)
-said = process.communicate()[1].splitlines()[-1]
-demand(process.returncode == 130, f"interrupted: exit code {process.returncode}")
-demand(said == "impact-damper: interrupted: long.json is not written", f"interrupted: {said}")
+# One damper in cavities of other clearances, that of its own scene among them, and as scenes of their own.
+def amplitudes(scene_words, *words):
+    rows = csv.DictReader(call("response", "sweep", "--scene", source / "data/examples/mast_in_wind.json", "--damping-ratio", 0.05, "--exciting-force", "20N",
+                               *scene_words, *words, "--format", "csv", "--si", "--quiet").splitlines())
+    return [float(row["amplitude_m"]) for row in rows if row["way"] == "up"]
+
+
+listed = amplitudes(["--clearance", "2mm"], "--vary", "clearance=1mm:3mm:3")
+for clearance, amplitude in zip((1, 2, 3), listed):
+    alone = amplitudes(["--clearance", f"{clearance}mm"], "--vary", "exciting_frequency=3.15Hz:3.2Hz:2")[0]
+    demand(math.isclose(alone, amplitude, rel_tol=1e-9), f"clearance {clearance} mm: {amplitude} m, as a scene of its own {alone} m")
+
+# Progress is for a terminal, where one line is rewritten. Interrupted: one line that says what is left, and no file, also
+# none half written.
+terminal, its_end = pty.openpty()
+long = ["response", "basin", *forced, "--vary", "x0=-1:1:2000", "--vary", "v0=-1:1:2000", "-o", "long.json"]
+piped, process = start(*long), start(*long, stderr=its_end)
+os.close(its_end)
+
+
+def shown(until):
+    """What the terminal shows up to this text, or to its end."""
+    text = b""
+    try:
+        while until not in text and (part := os.read(terminal, 4096)):
+            text += part
+    except OSError:  # nobody writes there any more
+        pass
+    return text
+
+
+progress = shown(b"points")
+demand(re.fullmatch(rb"\r\x1b\[Kresponse: \d+ of 4000000 points", progress), f"progress on a terminal: {progress}")
+for each in (piped, process):
+    each.send_signal(signal.SIGINT)
+said = "impact-damper: interrupted: long.json is not written"
+rest = shown(b"never")
+demand(rest.endswith(f"\r\x1b[K{said}\r\n".encode()) and rest.count(b"\n") == 1, f"interrupted on a terminal: {rest}")
+demand(piped.communicate()[1] == said + "\n", "interrupted: a pipe shows progress before ten seconds")
+for each in (piped, process):
+    demand(each.wait() == 130, f"interrupted: exit code {each.returncode}")
 demand(not list(folder.glob("*long*")), "interrupted: a file is left")
 
 finish()

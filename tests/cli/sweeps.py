@@ -94,7 +94,7 @@ for row in [row for row in rows if row not in wrong][::97]:
 # So do those of several dampers in units.
 boxes = json.loads((source / "data/examples/mast_boxes.json").read_text())
 write("boxes.json", boxes)
-call("sweep", "--scene", "boxes.json", "--vary", "clearance_1=40,60", "--keep", "impacts", "-o", "boxes.csv")
+call("sweep", "--scene", "boxes.json", "--vary", "clearance_1=40mm,6cm", "--keep", "impacts", "-o", "boxes.csv")
 for row in csv.DictReader(read("boxes.csv").splitlines()):
     boxes["dampers"][0]["clearance"] = float(row["clearance_1"])
     write("scene.json", boxes)

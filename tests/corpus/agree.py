@@ -56,7 +56,7 @@ BEYOND_SCHEMAS = {
     "It reads no braces and does not know what stands elsewhere in the file.": [
         "/(words|explanation|evidence): (must name|must have|must show|has a)"],
     "It does not add.": ["must be the sum of its parts"],
-    "It multiplies no numbers.": [r"/units/\w+: must be (length_m|mass_kg|energy_J) (divided by|times)"],
+    "It multiplies no numbers.": ["with the mass must make a stiffness", r"/units/\w+: must be (length_m|mass_kg|energy_J) (divided by|times)"],
     "A limit that is computed.": [r"/engine/(time_step|large_step): must be (<= |> \S+, the time step)"],
     "It holds elements apart only as a whole.": ["must be given once(, got| among)", "must differ from the scripts before it"],
     "What is named elsewhere in the file.": [

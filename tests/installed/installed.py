@@ -158,11 +158,15 @@ def terminals_can_be_made() -> bool:
 def shells_complete_every_option():
     all_options = {command: options(command) for command in commands()}
     engines = {"exact", "restitution", "cem"}
+    schema = json.loads((PREFIX / "share/impact-damper/data/schema/scene.schema.json").read_text())
+    keys = {"--" + key.replace("_", "-") for key in schema["properties"]}
+    demand("--natural-frequency" in bash_completes("run", "-") & fish_completes("impact-damper run --"), "keys are not completed")
     demand(set(commands()) <= bash_completes(""), bash_completes(""))
     demand(set(commands()) <= fish_completes("impact-damper "), fish_completes("impact-damper "))
     for command, names in all_options.items():
         longs = {name for name in names if name.startswith("--")}
-        demand(bash_completes(command, "-") == names, f"bash: {command}: {bash_completes(command, '-')}")
+        # The keys of scenes in units are options of which --help has one line.
+        demand(names <= bash_completes(command, "-") <= names | keys, f"bash: {command}: {bash_completes(command, '-')}")
         demand(longs <= fish_completes(f"impact-damper {command} --"), f"fish: {command}")
     demand(bash_completes("run", "--engine", "") == engines, "bash: --engine")
     demand(bash_completes("run", "--engine", "=", "re") == {"restitution"}, "bash: --engine=re")

@@ -95,6 +95,6 @@ def unfinished_in(folder):
 
 
 def complaints(error: str):
-    """The lines on stderr but for progress, which a program tells where it takes longer than two seconds, and for
+    """The lines on stderr but for progress, which a program tells where it takes longer than ten seconds, and for
     complaints about counts of lines that another interrupt has cut off."""
     return [line for line in error.splitlines() if not line.startswith(("report: ", "verify: ", "profiling: "))]

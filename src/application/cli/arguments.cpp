@@ -4,6 +4,25 @@
 
 namespace impact_damper::cli {
 
+std::optional<double> QuantityReader::operator()(std::string_view text) {
+  const auto bare = parse_number(text);
+  const std::string_view unit = unit_of(dimension, true);
+  if (!scales || unit == unit_of(dimension, false)) return bare;
+  if (const auto value = parse_quantity(text, dimension)) return value;
+  if (bare && (may_be_bare || *bare == 0)) return bare;
+  std::string with_its_unit(unit);
+  std::erase(with_its_unit, ' ');
+  if (!problem.empty()) return std::nullopt;
+  if (bare)
+    problem = filled("{} could be {} {} or {} {} = {} {}: write a unit, {}{}", text, text, unit, text,
+                     unit_of(dimension, false), rounded_text(*bare * scales->of(dimension), 6), unit, text,
+                     with_its_unit);
+  else
+    problem =
+        filled("must be a finite number with a unit, {}, got {}", written_units(dimension), in_quotes(text));
+  return std::nullopt;
+}
+
 std::optional<std::string> Arguments::text(const std::string& option) const {
   if (!given(option)) return std::nullopt;
   return texts(option).back();
@@ -68,6 +87,13 @@ std::optional<double> Arguments::number(const std::string& option, NumberRange r
   return parsed(option, range, parse_number, "a finite number");
 }
 
+std::optional<double> Arguments::quantity(const std::string& option, QuantityReader read, NumberRange range) {
+  const std::size_t before = problems_.size();
+  const auto value = parsed(option, range, std::ref(read), "a finite number");
+  if (problems_.size() > before && !read.problem.empty()) problems_.back().message = read.problem;
+  return value;
+}
+
 std::optional<std::int64_t> Arguments::whole_number(const std::string& option, NumberRange range) {
   return parsed(option, range, parse_integer, "a whole number");
 }
@@ -78,7 +104,8 @@ std::optional<std::size_t> Arguments::word(const std::string& option,
   if (!given_text) return std::nullopt;
   const auto found = std::ranges::find(words, *given_text);
   if (found != words.end()) return std::size_t(found - words.begin());
-  reject(option, filled("must be one of {}, got {}", joined(words, ", "), in_quotes(*given_text)));
+  reject(option, filled("must be one of {}, got {}{}", joined(words, ", "), in_quotes(*given_text),
+                        did_you_mean(*given_text, words)));
   return std::nullopt;
 }
 
@@ -98,10 +125,21 @@ void Arguments::finish() const {
 
 Threads threads_of(Arguments& arguments) { return arguments.whole_number("--threads", within(1, 1024)); }
 
-std::optional<Triple> parse_triple(std::string_view text) {
+std::optional<std::vector<double>> parse_quantities(std::string_view text, QuantityReader& read,
+                                                    char between) {
+  std::vector<double> numbers;
+  for (const std::string_view part : parts_of(text, between)) {
+    const auto number = read(part);
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+std::optional<Triple> parse_triple(std::string_view text, QuantityReader& first, QuantityReader& second) {
   const auto parts = parts_of(text, ':');
   if (parts.size() != 3) return std::nullopt;
-  const auto a = parse_number(parts[0]), b = parse_number(parts[1]);
+  const auto a = first(parts[0]), b = second(parts[1]);
   const auto count = parse_integer(parts[2]);
   if (!a || !b || !count) return std::nullopt;
   return Triple{*a, *b, *count};

@@ -21,8 +21,21 @@
 #include "impact_damper/base/errors.hpp"
 #include "impact_damper/base/number_text.hpp"
 #include "impact_damper/base/text.hpp"
+#include "impact_damper/units.hpp"
 
 namespace impact_damper::cli {
+
+// Reads numbers of one dimension as the command line gives them: beside a scene in units, which has scales,
+// with a unit, 12mm, else bare.
+struct QuantityReader {
+  Dimension dimension = Dimension::ratio;
+  std::optional<Scales> scales{};
+  bool may_be_bare = false;  // is in unit_of(dimension, true) then, as the option's help says
+  std::string problem{};     // of the first number that lacks its unit or has that of another dimension
+
+  // Returns the number in unit_of(dimension, scales.has_value()); absent if it is not valid.
+  std::optional<double> operator()(std::string_view text);
+};
 
 // A command line that is not valid. The field of a problem is an option or an argument.
 class UsageError : public InvalidArguments {
@@ -42,6 +55,7 @@ class Arguments {
   const std::vector<std::string>& texts(const std::string& option) const { return options_.at(option); }
   std::optional<std::string> file(const std::string& option);  // its name
   std::optional<double> number(const std::string& option, NumberRange range = {});
+  std::optional<double> quantity(const std::string& option, QuantityReader read, NumberRange range = {});
   std::optional<std::int64_t> whole_number(const std::string& option, NumberRange range = {});
   std::optional<std::size_t> word(const std::string& option, const std::vector<std::string_view>& words);
   // Rejects as well that it is not given.
@@ -108,12 +122,18 @@ std::vector<std::string_view> texts_of(const Elements& elements, Text text) {
   return texts;
 }
 
+// Reads the numbers A:B:..., or with another character between. Absent unless all are valid.
+std::optional<std::vector<double>> parse_quantities(std::string_view text, QuantityReader& read,
+                                                    char between = ':');
 // Reads A:B:N of options that ask for samples: two finite numbers and a count.
 struct Triple {
   double first = 0, second = 0;
   std::int64_t count = 0;
 };
-std::optional<Triple> parse_triple(std::string_view text);
+std::optional<Triple> parse_triple(std::string_view text, QuantityReader& first, QuantityReader& second);
+inline std::optional<Triple> parse_triple(std::string_view text, QuantityReader& both) {
+  return parse_triple(text, both, both);
+}
 
 // NAME=VALUES, the text of every option that gives a number of a scene several values: --vary, --tolerance.
 struct Varied {

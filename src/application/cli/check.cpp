@@ -1,4 +1,5 @@
 // `check`: reads files strictly, and does nothing else with them.
+#include <algorithm>
 #include <array>
 #include <filesystem>
 
@@ -67,19 +68,44 @@ constexpr std::array<Reader, 10> readers{
 
 std::vector<std::string_view> kinds() { return texts_of(readers, &Reader::kind); }
 
+// Returns the index of the reader for a file: by its schema, "impact-damper/run/1"; without one it is a scene
+// or, where FILE.json is beside it, the table of a sweep.
+std::size_t kind_of(const std::string& file) {
+  const std::vector<std::string_view> all = kinds();
+  std::error_code none;
+  const bool is_json = file.ends_with(".json") || !fs::exists(file + ".json", none);
+  std::string schema = is_json ? "//" : "/sweep/";
+  if (is_json) {
+    JsonDocument document = JsonDocument::parse(file, read_text(file));
+    if (ObjectReader root = document.root(); root.is_text("schema")) root.optional("schema", schema);
+    if (schema == "//") schema = "/scene/";
+  }
+  const std::vector<std::string_view> parts = parts_of(schema, '/');
+  const auto found = parts.size() == 3 ? std::ranges::find(all, parts[1]) : all.end();
+  if (found == all.end())
+    throw InputError(
+        file, {{"/schema", filled("must be that of a {}, got {}", listed(all, "or"), in_quotes(schema))}});
+  return std::size_t(found - all.begin());
+}
+
 int check(Arguments& arguments) {
-  const std::vector<std::string> files = arguments.files("FILE");
+  std::vector<std::string> files = arguments.files("FILE");
   const fs::path scenes = scenes_folder(arguments);
-  const std::optional<std::size_t> kind = arguments.required_word("KIND", kinds());
-  if (arguments.given("KIND") && !arguments.given("FILE"))
-    arguments.reject("FILE", "must be given, one or several");
+  std::optional<std::size_t> kind;
+  // The first argument may be left out; a kind is no name of a file.
+  if (const std::string first = arguments.text("KIND").value_or("");
+      first.find_first_of("./") != std::string::npos || fs::is_regular_file(first))
+    files.insert(files.begin(), find_named_file(first).value_or(first));
+  else
+    kind = arguments.word("KIND", kinds());
+  if (files.empty() && !arguments.given("FILE")) arguments.reject("FILE", "must be given, one or several");
   arguments.finish();
 
   std::string allowed;
   std::vector<std::string> problems;
   for (const std::string& file : files) {
     try {
-      readers[*kind].read(file, scenes);
+      readers[kind ? *kind : kind_of(file)].read(file, scenes);
       allowed += file + ": valid\n";
     } catch (const InputError& error) {
       problems.insert(problems.end(), error.problems().begin(), error.problems().end());
@@ -96,16 +122,17 @@ Command check_command() {
   return {
       .name = "check",
       .description = "Read files strictly and say all that is wrong with them.",
-      .options = {{"KIND", joined(kinds(), "|"), "what they are"},
+      .options = {{"KIND", joined(kinds(), "|"), "what they are; if left out, each file's schema tells it"},
                   input_option("FILE", "", "one or several"),
                   scenes_option()},
       .footer =
           R"(The same is checked whenever a file is read, but for this: a run or a response must agree with
-itself, and a run with the scene that it is named after, if --scenes has one. A sweep is given by
-its table, CSV, beside which FILE.json must be. Designs and comparisons are not read by any command:
+itself, and a run with the scene that it is named after, if --scenes has one. A file without a schema
+is a scene. A sweep is given by its table, CSV, beside which FILE.json must be. Designs and comparisons are not read by any command:
 their digest shows whether they are as they were written. data/schema/ holds JSON Schemas.
 
 Examples:
+  impact-damper check data/examples/*.json
   impact-damper check scene data/scenes/*.json
   impact-damper check run mine.json)",
       .act = check,

@@ -31,6 +31,7 @@ struct Option {
   std::string help{};
   Takes takes = Takes::value;
   std::string group{};  // its heading in --help; empty: "Options"
+  bool in_help = true;  // false: only the man page and the completions list it
 };
 using Options = std::vector<Option>;
 inline Option input_option(const std::string& name, const std::string& type, const std::string& help) {
@@ -92,23 +93,24 @@ std::string scenes_folder(Arguments& arguments);
 // --- What is simulated: the scene, beside or instead of its file, and the engine --------------------------
 
 // Reads the scene of --scene and the options beside it, which take precedence; problems are noted in
-// `arguments`. Throws InputError and IoError about the file. Options for the numbers of one damper are
-// rejected beside a list of several. Stops::ignored: a command that does not use a scene's stops neither
-// offers them nor reads those of the file.
+// `arguments`. Throws InputError and IoError about the file. Beside a scene in units the options are those of
+// its keys, too, and numbers have a unit; they change `in_units` and what is made of it. Options for the
+// numbers of one damper are rejected beside a list of several. Stops::ignored: a command that does not use a
+// scene's stops neither offers them nor reads those of the file. `own`: keys whose names the command's own
+// options have.
 enum class Stops { needed, ignored };
-SceneFile scene_of(Arguments& arguments, Stops stops = Stops::needed);
+using Keys = std::vector<std::string_view>;
+SceneFile scene_of(Arguments& arguments, Stops stops = Stops::needed, const Keys& own = {});
 // Returns the text of --scene, "" without one.
 std::string scene_name_of(const Arguments& arguments);
 // Throw InputError about its file where a command that is for one damper, or for one without laws of its own,
 // is given another scene.
 void require_one_damper(const Scene& scene, const std::string& scene_file);
 void require_one_linear_damper(const Scene& scene, const std::string& scene_file);
-// Rejects the options beside --scene, in commands that change a scene in units by its own numbers.
-void reject_options_beside_units(Arguments& arguments, const SceneFile& scene, const std::string& instead);
 Engine engine_of(Arguments& arguments, const std::vector<Engine>& engines = default_engines());
 
 // Return the options that scene_of() and engine_of() read.
-Options scene_options(Stops stops = Stops::needed);
+Options scene_options(Stops stops = Stops::needed, const Keys& own = {});
 Options engine_options(const std::vector<Engine>& engines = default_engines());
 
 // Returns whether --si asks for CSV in SI. Rejects it for JSON, `what` is called so, and for a dimensionless

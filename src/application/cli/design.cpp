@@ -11,10 +11,11 @@
 namespace impact_damper::cli {
 namespace {
 
+const Keys searched{"secondary_mass", "clearance"};  // of which the command has options of its own
+
 SceneFile scene_with_one_damper(Arguments& arguments) {
-  SceneFile file = scene_of(arguments, Stops::ignored);
+  SceneFile file = scene_of(arguments, Stops::ignored, searched);
   require_one_damper(file.scene, scene_name_of(arguments));
-  reject_options_beside_units(arguments, file, "");
   return file;
 }
 
@@ -60,7 +61,8 @@ std::vector<Variable> tolerable(bool in_units) {
   any.in_units.emplace();
   std::vector<Variable> variables = variables_of(any);
   std::erase_if(variables, [&](const Variable& each) {
-    const bool only_in_units = each.name == "mass" || each.name == "stiffness" || each.name == "damping" ||
+    const bool only_in_units = each.name == "mass" || each.name == "stiffness" ||
+                               each.name == "natural_frequency" || each.name == "damping" ||
                                each.name == "inclination" || each.name == "gravity" || each.name == "drag" ||
                                each.name.ends_with("friction_coefficient");
     return each.name.starts_with("exciting_") || each.name.starts_with("secondary_d") ||
@@ -153,9 +155,9 @@ std::string walls_in_words(const DesignQuestion& question, const DesignAnswer& a
   const double stiffness = *scene.damper().contact_stiffness;
   const std::string text =
       filled("Wall forces are those of walls of {}",
-             text_in_unit(question, question.in_units ? stiffness : stiffness / *scene.stiffness,
+             text_in_unit(question, question.in_units ? stiffness : stiffness / *stiffness_of(scene),
                           Dimension::stiffness));
-  if (stiffness != ratio * *scene.stiffness) return text + ".\n";
+  if (stiffness != ratio * *stiffness_of(scene)) return text + ".\n";
   return filled(
       "{}, {} times the primary stiffness: an assumption, the program's\ndefault. They go as its square "
       "root: give {} of your own walls.\n",
@@ -474,7 +476,7 @@ Command design_command() {
       .description =
           "Find the lightest secondary mass, and its clearance, with which a free decay is over in time, "
           "within tolerances; or several dampers for a range of amplitudes.",
-      .options = together({own_options(), scene_options(Stops::ignored), engine_options()}),
+      .options = together({own_options(), scene_options(Stops::ignored, searched), engine_options()}),
       .footer =
           R"(The scene is that of impact-damper run, a free decay; its secondary mass and clearance are not looked at. Beside a
 dimensionless scene lengths are in units of its clearance, masses of the primary mass, times of sqrt(M/K).

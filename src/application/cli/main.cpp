@@ -49,14 +49,13 @@ std::vector<Problem> unknown_arguments(const CLI::App& program, const CLI::App& 
       continue;
     const std::string name = argument.substr(0, argument.find('='));
     const bool stands_behind = std::find(known.begin(), known.end(), name) != known.end();  // a bare "--"
-    const auto meant = stands_behind ? std::nullopt : nearest(name, known);
+    const std::string meant = stands_behind ? "" : did_you_mean(name, known);
     std::error_code unknown;
-    const bool is_scene = !meant && !is_option && std::count(known.begin(), known.end(), "--scene") > 0 &&
+    const bool is_scene = meant.empty() && !is_option &&
+                          std::count(known.begin(), known.end(), "--scene") > 0 &&
                           std::filesystem::is_regular_file(argument, unknown);
     problems.push_back({"", "unknown argument " + in_quotes(argument) +
-                                (meant      ? ", did you mean " + std::string(*meant) + "?"
-                                 : is_scene ? ", did you mean --scene " + cut(argument) + "?"
-                                            : "")});
+                                (is_scene ? ", did you mean --scene " + cut(argument) + "?" : meant)});
   }
   return problems;
 }
@@ -78,10 +77,17 @@ std::vector<std::string> arguments_of(const CLI::App& program, int count, char**
   return arguments;
 }
 
+// Returns the long name of an option, or the name of an argument; the parser has none for what its help
+// hides.
+std::string name_of(const CLI::Option& option) {
+  const std::vector<std::string>& names = option.get_lnames();
+  return names.empty() ? option.get_name() : "--" + names.front();
+}
+
 // Returns what the parser found for one subcommand.
 cli::Arguments found_for(const CLI::App& parsed, const cli::Command& command) {
   std::map<std::string, std::vector<std::string>> options;
-  for (const CLI::Option* option : parsed.get_options()) options[option->get_name()] = option->results();
+  for (const CLI::Option* option : parsed.get_options()) options[name_of(*option)] = option->results();
   std::vector<std::string> more = parsed.remaining();
   const auto find = [](std::vector<std::string>& names) {
     for (std::string& name : names) name = cli::find_named_file(name).value_or(name);
@@ -105,7 +111,7 @@ std::vector<Problem> swallowed_options(const CLI::App& command) {
   for (const CLI::Option* option : options) {
     for (const std::string& value : option->results())
       if (is_option(value))
-        problems.push_back({option->get_name(), "needs a value, got the option " + cut(value)});
+        problems.push_back({name_of(*option), "needs a value, got the option " + cut(value)});
   }
   return problems;
 }
@@ -138,7 +144,8 @@ void add_options(CLI::App& app, const cli::Command& command) {
                                     : app.add_option(each.name, each.help);
     if (each.takes != cli::Option::Takes::nothing) option->type_name(each.type);
     if (each.takes == cli::Option::Takes::repeated_value) option->expected(1)->take_all();
-    if (!each.group.empty()) option->group(each.group);
+    if (!each.in_help) option->group("");
+    if (each.in_help && !each.group.empty()) option->group(each.group);
   }
   app.footer(command.footer);
   app.allow_extras(command.takes_more);

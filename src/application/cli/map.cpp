@@ -2,10 +2,12 @@
 #include "application/sweeps/map.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "application/sweeps/sweep_table.hpp"
 #include "commands.hpp"
@@ -50,6 +52,12 @@ struct Named {
   }
 };
 
+// What must be given, in the words of its problem.
+constexpr std::array<std::pair<const char*, const char*>, 3> needed{
+    {{"--x", "must be given: a number of the grid"},
+     {"--y", "must be given: a number of the grid"},
+     {"--z", "must be given: a quantity of the table"}}};
+
 // Returns the index of the name that an option gives; absent, and noted, if it is none of them.
 std::optional<std::size_t> index_of(Arguments& arguments, const std::string& option, const std::string& name,
                                     const std::vector<std::string_view>& names, const std::string& what) {
@@ -65,30 +73,22 @@ std::vector<std::string_view> names_of(const std::vector<GridAxis>& grid) {
 }
 
 std::optional<std::size_t> axis_of(Arguments& arguments, const std::string& option, const Plan& plan) {
-  const auto name = arguments.text(option);
-  if (!name) {
-    arguments.reject(option, "must be given: a number of the grid");
-    return std::nullopt;
-  }
-  const auto index = index_of(arguments, option, *name, names_of(plan.grid), "a number of the table's grid");
+  const std::string name = arguments.texts(option).back();
+  const auto index = index_of(arguments, option, name, names_of(plan.grid), "a number of the table's grid");
   if (index && plan.grid[*index].size() < 2)
     arguments.reject(
-        option, filled("must have at least two values, {} has one: {}", *name, plan.grid[*index].value(0)));
+        option, filled("must have at least two values, {} has one: {}", name, plan.grid[*index].value(0)));
   return index;
 }
 
 std::optional<std::size_t> quantity_of(Arguments& arguments, const Plan& plan) {
-  auto name = arguments.text("--z");
-  if (!name) {
-    arguments.reject("--z", "must be given: a quantity of the table");
-    return std::nullopt;
-  }
+  std::string name = arguments.texts("--z").back();
   std::vector<std::string> columns;
   for (const KeptQuantity& each : plan.quantities) {
     columns.push_back(each.column());
-    if (*name == each.text()) name = each.column();
+    if (name == each.text()) name = each.column();
   }
-  return index_of(arguments, "--z", *name, {columns.begin(), columns.end()}, "a quantity of the table");
+  return index_of(arguments, "--z", name, {columns.begin(), columns.end()}, "a quantity of the table");
 }
 
 // Sets each number that is neither x nor y to the value that --where gives, or to its only one.
@@ -109,8 +109,10 @@ void fix_the_others(Arguments& arguments, const Plan& plan, MapQuestion& questio
     }
     std::vector<double> values;
     for (std::int64_t i = 0; i < axis.size(); ++i) values.push_back(axis.value(i));
+    QuantityReader read{
+        .dimension = axis.variable.dimension, .scales = plan.scene.scales, .may_be_bare = true};
     const double value =
-        parse_number(std::string_view(text).substr(std::min(equals + 1, text.size()))).value_or(std::nan(""));
+        read(std::string_view(text).substr(std::min(equals + 1, text.size()))).value_or(std::nan(""));
     // Accepts the value as it was written: 0.1, where a step of the grid has come to 0.09999999999999999.
     const double rounding = 1e-12 * std::max(std::abs(values.front()), std::abs(values.back()));
     const auto meant =
@@ -329,6 +331,8 @@ int make_map(Arguments& arguments) {
              output = arguments.required_file("--output", "the picture is written there, as SVG");
   reject_other_endings(arguments, "--output", output, {Format::svg});
   if (file) arguments.reject_overwriting("--output", output, {*file, *file + ".json"});
+  for (const auto& [option, what] : needed)
+    if (!arguments.given(option)) arguments.reject(option, what);
   arguments.finish();  // before the table is read, which decides what else is valid
   const SweepDescription description = read_sweep_description(*file);
   const MapQuestion question = question_of(arguments, description.plan);

@@ -1,7 +1,9 @@
 #include "progress.hpp"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -12,6 +14,7 @@
 #include <system_error>
 
 #include "drawing.hpp"
+#include "impact_damper/base/text.hpp"
 #include "impact_damper/io/file_output.hpp"
 
 namespace impact_damper::cli {
@@ -19,17 +22,23 @@ namespace {
 
 std::atomic<const char*> what_is_left = "impact-damper: interrupted: nothing is written\n";
 static_assert(std::atomic<const char*>::is_always_lock_free);
+constexpr const char* erased_line = "\r\x1b[K";  // of a terminal, where progress is shown
 
 // Calls only what a signal handler may. Ends with an exit code, as documented, rather than by the signal,
 // which shells report with the same number.
 extern "C" void end(int signal) {
   remove_unfinished_file();
   remove_drawing_board();
-  const char* const text = what_is_left;
-  if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) {
-    // Nobody reads stderr.
-  }
+  for (const char* const text : {::isatty(STDERR_FILENO) == 1 ? erased_line : "", what_is_left.load()})
+    if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) break;  // nobody reads stderr
   ::_exit(128 + signal);
+}
+
+std::size_t columns_of_terminal() {
+  constexpr unsigned short least = 20, otherwise = 80;
+  winsize size{};
+  const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col >= least;
+  return known ? size.ws_col : otherwise;
 }
 
 }  // namespace
@@ -53,20 +62,24 @@ ProgressOnStderr::~ProgressOnStderr() {
 
 void ProgressOnStderr::report() {
   using namespace std::chrono_literals;
-  constexpr int first = 2, at_least_every = 10;  // seconds
-  constexpr int minute = 60;                     // after n minutes at most a line in n seconds
-  std::string reported;
+  constexpr int at_least_every = 10;  // seconds
+  constexpr int minute = 60;          // after n minutes at most a line in n seconds
+  const bool is_terminal = ::isatty(STDERR_FILENO) == 1;
+  const int first = is_terminal ? 2 : at_least_every;
   std::unique_lock lock(mutex_);
+  bool has_line = false;
   for (int second = 1, last = 0; !changed_.wait_for(lock, 1s, [&] { return ended_; }); ++second) {
     const int silent = second - last;
-    if (second < first || doing_.empty() || silent < second / minute) continue;
-    if (doing_ == reported && silent < at_least_every) continue;
-    std::cerr << command_ << ": " << doing_
-              << (doing_ == reported ? ", " + std::to_string(second) + " s since the start" : "")
-              << std::endl;
-    reported = doing_;
+    if (second < first || doing_.empty()) continue;
+    if (!is_terminal && silent < std::max(at_least_every, second / minute)) continue;
+    const std::string line = command_ + ": " + doing_;
+    // A line of its own, or one that takes the place of the last; cut, because a terminal would wrap it.
+    std::cerr << (is_terminal ? erased_line + cut(line, columns_of_terminal() - 4) : line + '\n')
+              << std::flush;
+    has_line = is_terminal;
     last = second;
   }
+  if (has_line) std::cerr << erased_line << std::flush;
 }
 
 void end_cleanly() {

@@ -10,9 +10,10 @@
 
 namespace impact_damper::cli {
 
-// Reports on stderr what is being done: nothing in the first two seconds, then once a second if it has
-// changed, and at least every ten seconds; after minutes less often, so that the log of a day has 500 lines.
-// A thread of its own reports it, also during a long simulation.
+// Reports on stderr what is being done: on a terminal after two seconds, in one line that each second
+// rewrites and the end removes; elsewhere a line in ten seconds, after minutes less often, so that the log of
+// a day has 500 lines, and none of what ends sooner. A thread of its own reports it, also during a long
+// simulation.
 class ProgressOnStderr {
  public:
   explicit ProgressOnStderr(std::string command);

@@ -1,6 +1,7 @@
 // `response`: the steady states of a scene under its force, along one of its numbers or over two, its
 // periodic motions, stable or not, and its Lyapunov exponents.
 #include <algorithm>
+#include <array>
 #include <iostream>
 #include <map>
 #include <tuple>
@@ -61,14 +62,15 @@ const std::vector<OptionOfKinds>& options_of_kinds() {
       {repeated_option(
            "--vary", "NAME=FROM:TO:N",
            "the number of the scene that takes N equally spaced values, both\nends included: mass_ratio, "
-           "force_amplitude, force_frequency, ...,\nclearance_2 of the second of several dampers; beside a "
-           "scene in units\nalso by its name there, in its unit: exciting_frequency=4:6:101 in Hz.\nOnce for "
+           "force_amplitude, force_frequency, ...,\nclearance, clearance_2 of the second of several dampers; "
+           "beside a "
+           "scene in units\nalso by its name there, with units: exciting_frequency=4Hz:6Hz:101.\nOnce for "
            "a sweep, twice for a basin. For orbits NAME=FROM:TO,\nfrequency or amplitude of the force; they "
            "begin at FROM, which may be\nthe larger one"),
        not_lyapunov},
       {repeated_option("--start", "X0:V0:Y0:W0",
-                       "sweep, orbits: one more that begins there beside the scene's\nrelease, in mm and "
-                       "mm/s beside a scene in units; may be repeated. Of several\ndampers X0:V0"),
+                       "sweep, orbits: one more that begins there beside the scene's\nrelease, beside a "
+                       "scene in units 1mm:0:5mm:20mm/s; may be repeated. Of several\ndampers X0:V0"),
        {Kind::sweep, Kind::orbits}},
       {{"--nudge", "X",
         "sweep: n times this is added to x of the sweep from the n-th --start\nat each value but its first; "
@@ -140,25 +142,34 @@ const std::vector<Engine>& offered_engines() {
   return offered;
 }
 
-// A number that --vary can name, and the size of its dimensionless unit in the unit of the scene's file.
+// A number that --vary can name.
 struct Variable {
   SceneNumber number;
   NumberRange range{};  // dimensionless
-  double scale = 1;
+  Dimension dimension = Dimension::ratio;
+  std::optional<Scales> scales{};
+
+  double scale() const { return scale_of(dimension, scales); }
+  QuantityReader reader() const { return {.dimension = dimension, .scales = scales}; }
 };
 using Variables = std::map<std::string, Variable, std::less<>>;
 
-// Returns the numbers of a scene by name; those of a scene in units also by their names in its file.
+// Returns the numbers of a scene by name; those of a scene in units also by their names in its file, and
+// those of the only damper of a list without its number, too.
 Variables variables_of(const Scene& scene, const std::optional<Scales>& scales) {
   Variables variables;
   for (const auto& [name, number, least, most] : numbers_of(scene)) {
-    const std::string_view its = field_of(number).name;
-    variables[name] = {number, within(least, most)};
+    const SceneField& its = field_of(number);
+    const std::string of_damper = name.substr(its.name.size());  // "_1"
+    const auto add = [&](std::string_view key, Dimension dimension) {
+      const Variable variable{number, within(least, most), dimension, scales};
+      variables[std::string(key) + of_damper] = variable;
+      if (scene.dampers.size() == 1) variables[std::string(key)] = variable;
+    };
+    add(its.name, its.dimension);
     for (const UnitField& field : unit_fields)
-      if (scales && field.becomes == its && field.dimension != Dimension::ratio &&
-          !field_of(number).component)
-        variables[std::string(field.name) + name.substr(its.size())] = {number, within(least, most),
-                                                                        scales->of(field.dimension)};
+      if (scales && field.becomes == its.name && field.dimension != Dimension::ratio && !its.component)
+        add(field.name, field.dimension);
   }
   return variables;
 }
@@ -177,7 +188,12 @@ std::optional<Axis> axis_of(Arguments& arguments, const std::string& text, const
   const auto varied = number_of(arguments, text, variables);
   if (!varied) return std::nullopt;
   const auto& [variable, values] = *varied;
-  const auto range = values ? parse_triple(*values) : std::nullopt;
+  QuantityReader read = variable.reader();
+  const auto range = values ? parse_triple(*values, read) : std::nullopt;
+  if (!read.problem.empty()) {
+    arguments.reject("--vary", text.substr(0, text.find('=')) + ": " + read.problem);
+    return std::nullopt;
+  }
   if (!range || !(range->first < range->second) || !(range->count >= 2 && range->count <= most_values)) {
     arguments.reject("--vary", filled("must be NAME=FROM:TO:N with FROM < TO and 2 to {} values, got {}",
                                       most_values, in_quotes(text)));
@@ -185,13 +201,14 @@ std::optional<Axis> axis_of(Arguments& arguments, const std::string& text, const
   }
   const NumberRange& allowed = variable.range;
   for (const double end : {range->first, range->second}) {
-    if (allowed.allows(end / variable.scale)) continue;
-    const NumberRange in_its_unit = within(allowed.least * variable.scale, allowed.most * variable.scale);
+    if (allowed.allows(end / variable.scale())) continue;
+    const NumberRange in_its_unit = within(allowed.least * variable.scale(), allowed.most * variable.scale());
     arguments.reject("--vary", filled("values of {} must be {}, got {}", text.substr(0, text.find('=')),
                                       in_its_unit.describe("numbers"), end));
     return std::nullopt;
   }
-  return Axis{variable.number, range->first / variable.scale, range->second / variable.scale, range->count};
+  return Axis{variable.number, range->first / variable.scale(), range->second / variable.scale(),
+              range->count};
 }
 
 std::vector<Axis> axes_of(Arguments& arguments, const Variables& variables, bool is_sweep) {
@@ -239,28 +256,40 @@ std::optional<ParameterRange> range_of(Arguments& arguments, const Variables& va
                      "must be frequency or amplitude of the force for orbits, got " + in_quotes(given[0]));
     return std::nullopt;
   }
-  const auto ends = parse_numbers(values.value_or(""));
+  QuantityReader read = variable.reader();
+  const auto ends = parse_quantities(values.value_or(""), read);
+  if (!read.problem.empty()) {
+    arguments.reject("--vary", given[0].substr(0, given[0].find('=')) + ": " + read.problem);
+    return std::nullopt;
+  }
   if (!ends || ends->size() != 2 || !((*ends)[0] > 0 && (*ends)[1] > 0) || (*ends)[0] == (*ends)[1]) {
     arguments.reject("--vary", "must be NAME=FROM:TO for orbits, with two different numbers > 0, got " +
                                    in_quotes(given[0]));
     return std::nullopt;
   }
-  range.from = (*ends)[0] / variable.scale;
-  range.to = (*ends)[1] / variable.scale;
+  range.from = (*ends)[0] / variable.scale();
+  range.to = (*ends)[1] / variable.scale();
   return range;
 }
 
-// Reads X:V:Y:W in the units of the scene's file; with a list of dampers X:V, the dampers starting as in the
-// scene.
-std::optional<SceneState> parse_state(std::string_view text, const SceneFile& file) {
+// Reads X:V:Y:W, with a list of dampers X:V, the dampers starting as in the scene. Sets `problem` where a
+// number lacks its unit.
+std::optional<SceneState> parse_state(std::string_view text, const SceneFile& file, std::string& problem) {
   const std::size_t count = has_one_damper(file.scene) ? 4 : 2;
-  auto numbers = parse_numbers(text);
-  if (!numbers || numbers->size() != count) return std::nullopt;
-  numbers->resize(4);
-  const double length = scale_of(Dimension::length, file.scales),
-               velocity = scale_of(Dimension::velocity, file.scales);
-  SceneState state = State<double>{(*numbers)[0] / length, (*numbers)[1] / velocity, (*numbers)[2] / length,
-                                   (*numbers)[3] / velocity};
+  const auto parts = parts_of(text, ':');
+  if (parts.size() != count) return std::nullopt;
+  std::array<double, 4> numbers{};
+  for (std::size_t i = 0; i < count; ++i) {
+    QuantityReader read{.dimension = i % 2 == 0 ? Dimension::length : Dimension::velocity,
+                        .scales = file.scales};
+    const auto number = read(parts[i]);
+    if (!number) {
+      problem = read.problem;
+      return std::nullopt;
+    }
+    numbers[i] = *number / scale_of(read.dimension, file.scales);
+  }
+  SceneState state = State<double>{numbers[0], numbers[1], numbers[2], numbers[3]};
   if (count == 2) state.dampers = release_of(file.scene).dampers;
   return state;
 }
@@ -269,16 +298,19 @@ std::optional<SceneState> parse_state(std::string_view text, const SceneFile& fi
 std::vector<SceneState> starts_of(Arguments& arguments, const SceneFile& file) {
   std::vector<SceneState> starts{release_of(file.scene)};
   for (const std::string& text : arguments.texts("--start")) {
-    const auto start = parse_state(text, file);
+    std::string problem;
+    const auto start = parse_state(text, file, problem);
     if (start) {
       starts.push_back(*start);
-      for (const Problem& problem : problems_of(released_from(file.scene, *start)))
-        arguments.reject("--start", problem.field + " " + problem.message);
+      for (const Problem& each : problems_of(released_from(file.scene, *start)))
+        arguments.reject("--start", each.field + " " + each.message);
     } else {
-      arguments.reject("--start",
-                       filled("must be {}, got {}",
-                              has_one_damper(file.scene) ? "four numbers X0:V0:Y0:W0" : "two numbers X0:V0",
-                              in_quotes(text)));
+      arguments.reject("--start", !problem.empty()
+                                      ? problem
+                                      : filled("must be {}, got {}",
+                                               has_one_damper(file.scene) ? "four numbers X0:V0:Y0:W0"
+                                                                          : "two numbers X0:V0",
+                                               in_quotes(text)));
     }
   }
   return starts;
@@ -286,7 +318,8 @@ std::vector<SceneState> starts_of(Arguments& arguments, const SceneFile& file) {
 
 // Returns the shift of x, dimensionless.
 double nudge_of(Arguments& arguments, const SceneFile& file) {
-  const auto nudge = arguments.number("--nudge", nudges);
+  const auto nudge = arguments.quantity(
+      "--nudge", {.dimension = Dimension::length, .scales = file.scales, .may_be_bare = true}, nudges);
   if (nudge && !arguments.given("--start"))
     arguments.reject("--nudge", "parts the sweeps of several starts: needs --start");
   return nudge.value_or(0) / scale_of(Dimension::length, file.scales);
@@ -486,12 +519,22 @@ int respond(Arguments& arguments) {
   read_numbers(arguments, asked);
   if (word) {
     reject_options_of_others(arguments, asked.kind);
-    const Variables variables = variables_of(asked.file.scene, asked.file.scales);
+    Scene& scene = asked.file.scene;
+    const bool varies_its_clearance =
+        has_one_damper(scene) && std::ranges::any_of(arguments.texts("--vary"), [](const std::string& text) {
+          return text.starts_with("clearance=");
+        });
+    // With a clearance other than 1 it is a list of one, of which a clearance is a number as any.
+    if (varies_its_clearance) scene.damper().clearance = 2;
+    const Variables variables = variables_of(scene, asked.file.scales);
     if (asked.kind == Kind::orbits) {
       asked.range = range_of(arguments, variables);
     } else if (asked.kind != Kind::lyapunov) {
       asked.axes = axes_of(arguments, variables, asked.kind == Kind::sweep);
     }
+    for (const Axis& axis : asked.axes)
+      if (varies_its_clearance && axis.number.is(&SceneDamper::clearance))
+        scene.damper().clearance = axis.from == 1 ? axis.to : axis.from;
   }
   const std::string scene_name = scene_name_of(arguments);
   const auto output = arguments.file("--output");
@@ -564,11 +607,11 @@ Examples:
   impact-damper response sweep --mass-ratio 0.05 --damping-ratio 0.005 --force-amplitude 0.02 \
     --x0 0 --vary force_frequency=0.9:1.1:201 --format csv -o sweep.csv
   impact-damper response sweep --scene data/examples/mast_in_wind.json \
-    --vary exciting_frequency=2.9:3.5:61 --format csv --si -o wind.csv
+    --vary exciting_frequency=2.9Hz:3.5Hz:61 --format csv --si -o wind.csv
   impact-damper response basin --mass-ratio 0.1 --damping-ratio 0.01 --force-amplitude 0.05 \
     --force-frequency 0.9 --y0 0.5 --engine restitution --vary x0=-1:1:200 --vary v0=-1:1:200 -o map.json
   impact-damper response orbits --scene data/examples/mast_in_wind.json \
-    --vary exciting_frequency=3.08:3.3 --format csv --si -o orbits.csv
+    --vary exciting_frequency=3.08Hz:3.3Hz --format csv --si -o orbits.csv
   impact-damper response lyapunov --mass-ratio 0.05 --damping-ratio 0.01 --force-amplitude 0.3 \
     --force-frequency 0.9 --periods 20000)",
       .act = respond};

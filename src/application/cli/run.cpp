@@ -43,11 +43,14 @@ void read_sections(Arguments& arguments, Record& record) {
 // Reads a window of samples, in the units of the scene's file. Absent, and noted, unless allows(window).
 template <class Allows>
 std::optional<Triple> window_of(Arguments& arguments, const std::string& option, const std::string& text,
-                                const std::string& allowed, Allows allows) {
-  const std::optional<Triple> window = parse_triple(text);
+                                QuantityReader first, QuantityReader second, const std::string& allowed,
+                                Allows allows) {
+  const std::optional<Triple> window = parse_triple(text, first, second);
   if (window && window->count >= 2 && window->count <= most_samples && allows(*window)) return window;
-  arguments.reject(option,
-                   filled("must be {} and 2 to {} samples, got {}", allowed, most_samples, in_quotes(text)));
+  const std::string problem = first.problem.empty() ? second.problem : first.problem;
+  arguments.reject(option, !problem.empty() ? problem
+                                            : filled("must be {} and 2 to {} samples, got {}", allowed,
+                                                     most_samples, in_quotes(text)));
   return std::nullopt;
 }
 
@@ -60,12 +63,14 @@ Record record_of(Arguments& arguments, const SceneFile& file) {
   const double time_unit = scale_of(Dimension::time, file.scales),
                length_unit = scale_of(Dimension::length, file.scales);
   const std::string seconds = file.scales ? " s" : "", millimetres = file.scales ? " mm" : "";
+  const QuantityReader a_time{.dimension = Dimension::time, .scales = file.scales, .may_be_bare = true},
+      a_length{.dimension = Dimension::length, .scales = file.scales, .may_be_bare = true};
   const double longest = 1e12 * time_unit;
   double last = 0;
   for (const std::string& text : arguments.texts("--history")) {
     const auto window = window_of(
-        arguments, "--history", text, filled("T0:T1:N with {} <= T0 < T1 <= {}{}", last, longest, seconds),
-        [&](const Triple& each) {
+        arguments, "--history", text, a_time, a_time,
+        filled("T0:T1:N with {} <= T0 < T1 <= {}{}", last, longest, seconds), [&](const Triple& each) {
           return each.first >= last && each.second > each.first && each.second <= longest;
         });
     if (!window) continue;
@@ -81,7 +86,7 @@ Record record_of(Arguments& arguments, const SceneFile& file) {
   double above_it = 1e12 * length_unit;
   for (const std::string& text : arguments.texts("--history-below")) {
     const auto window = window_of(
-        arguments, "--history-below", text,
+        arguments, "--history-below", text, a_length, a_time,
         filled("A:LENGTH:N with 0 < A < {}{}, 0 < LENGTH <= {}{}", above_it, millimetres, longest, seconds),
         [&](const Triple& each) {
           return each.first > 0 && each.first < above_it && each.second > 0 && each.second <= longest;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <functional>
 #include <iostream>
+#include <map>
 #include <sstream>
 
 #include "commands.hpp"
@@ -137,26 +138,127 @@ std::string help_of(const OfferedOption& offered, std::size_t engines) {
   return text;
 }
 
+constexpr std::array<std::string_view, 2> stops_of_scene{"until_time", "until_amplitude"};
+bool is_stop(std::string_view key) { return key.starts_with("until_"); }
+
+// A key of a scene as an option: of a scene in units, of a dimensionless one, or of both.
+struct SceneKey {
+  std::string_view name;
+  const UnitField* in_units = nullptr;        // it, or what is made of it
+  const SceneField* dimensionless = nullptr;  // absent: a stop, or only of a scene in units
+};
+
+// Returns the keys that are options, first those of scenes in units.
+std::vector<SceneKey> scene_keys(Stops stops, const Keys& own) {
+  std::vector<SceneKey> keys;
+  const auto named = [](const auto& fields, std::string_view name) {
+    const auto found = std::ranges::find_if(fields, [&](const auto& each) { return each.name == name; });
+    return found == fields.end() ? nullptr : &*found;
+  };
+  const auto add = [&](std::string_view name) {
+    if ((stops == Stops::ignored && is_stop(name)) || std::ranges::count(own, name) > 0) return;
+    const UnitField* made = named(unit_fields, name);
+    if (!made) made = &*std::ranges::find(unit_fields, name, &UnitField::becomes);
+    keys.push_back({name, made, named(scene_fields, name)});
+  };
+  for (const UnitField& field : unit_fields) add(field.name);
+  for (const SceneField& field : scene_fields)
+    if (!named(unit_fields, field.name)) add(field.name);
+  for (const std::string_view stop : stops_of_scene) add(stop);
+  return keys;
+}
+
+// Returns the number of an option beside a scene in units, in the unit of `key.in_units`.
+std::optional<double> number_in_units(Arguments& arguments, const SceneKey& key, const SceneInUnits& scene) {
+  const std::string option = option_of(key.name);
+  const UnitField& field = *key.in_units;
+  const Scales scales = scales_of(scene);
+  const bool is_its_own = key.name == field.name;
+  if (key.dimensionless && key.dimensionless->component && !is_its_own) {
+    const auto value = arguments.number(option);
+    if (value && *value != 0)
+      arguments.reject(
+          option, filled("is of a dimensionless scene: beside one in units give {}", option_of(field.name)));
+    return value;
+  }
+  const bool is_ratio = key.dimensionless && key.dimensionless->dimension == Dimension::ratio && !is_its_own;
+  if (!is_ratio) return arguments.quantity(option, {.dimension = field.dimension, .scales = scales});
+  const auto ratio = arguments.number(option);  // of the masses, or of a wall's and the spring's stiffness
+  return ratio ? std::optional(*ratio * scales.of(field.dimension)) : std::nullopt;
+}
+
+// Changes the scene in units of `file` by the options beside it.
+void override_in_units(Arguments& arguments, SceneFile& file, const std::string& name,
+                       const std::vector<SceneKey>& keys) {
+  SceneInUnits& scene = *file.in_units;
+  std::map<const UnitField*, std::string> given;  // the option that sets it
+  std::vector<std::pair<NumberInUnits, double>> numbers;
+  bool all_read = true;
+  for (const SceneKey& key : keys) {
+    const std::string option = option_of(key.name);
+    if (!arguments.given(option)) continue;
+    const auto value = number_in_units(arguments, key, scene);
+    const auto [before, is_first] = given.try_emplace(key.in_units, option);
+    const NumberInUnits& number = key.in_units->number;
+    all_read = all_read && value;
+    if (!is_first)
+      arguments.reject(option, filled("either it or {} must be given, got both", before->second));
+    else if (number.of_damper && scene.dampers.size() > 1)
+      arguments.reject(option, "is for one damper: " + name + " has a list, which sets their numbers");
+    else if (number.of_damper && is_replaced(scene.damper(), key.in_units->name))
+      arguments.reject(option, "has no effect: " + name + " has a table in place of it");
+    else if (value) {
+      numbers.emplace_back(number, *value);
+      set_number(scene, number, *value);
+    }
+  }
+  if (given.empty() || !all_read) return;
+  for (const auto& [number, value] : numbers)
+    number.in(scene) = value;  // where two stand for each other, both
+  for (const Problem& problem : problems_of(scene)) {
+    const auto its =
+        std::ranges::find_if(given, [&](const auto& each) { return each.first->name == problem.field; });
+    arguments.reject(its == given.end() ? "--scene" : its->second,
+                     (its == given.end() ? problem.field + " " : "") + problem.message);
+  }
+  if (!problems_of(scene).empty()) return;
+  file.scene = dimensionless(scene);
+  file.scales = scales_of(scene);
+}
+
 }  // namespace
 
-SceneFile scene_of(Arguments& arguments, Stops stops) {
+SceneFile scene_of(Arguments& arguments, Stops stops, const Keys& own) {
   const std::optional<std::string> name = arguments.file("--scene");
   SceneFile file = name ? read_scene_file(*name) : SceneFile{};
+  const std::vector<SceneKey> keys = scene_keys(stops, own);
   Scene& scene = file.scene;
+  if (file.in_units) {
+    override_in_units(arguments, file, *name, keys);
+    if (stops == Stops::ignored) scene.until_time = 1, scene.until_amplitude.reset();  // a scene needs one
+    return file;
+  }
   bool all_read = true;
   const auto override_with = [&](std::string_view field, auto& target) {
     const std::optional<double> value = arguments.number(option_of(field));
     if (value) target = *value;
     if (!value && arguments.given(option_of(field))) all_read = false;
   };
-  for (const SceneField& field : scene_fields) {
-    override_with(field.name, field.number.in(scene));
-    if (field.number.of_damper && !has_one_damper(scene) && arguments.given(option_of(field.name)))
-      arguments.reject(option_of(field.name),
-                       "is for one damper: " + *name + " has a list, which sets their numbers");
-    else if (field.number.of_damper && is_replaced(scene.damper(), field.name) &&
-             arguments.given(option_of(field.name)))
-      arguments.reject(option_of(field.name), "has no effect: " + *name + " has a table in place of it");
+  for (const SceneKey& key : keys) {
+    const std::string option = option_of(key.name);
+    if (key.dimensionless) {
+      const SceneNumber& number = key.dimensionless->number;
+      override_with(key.name, number.in(scene));
+      if (number.of_damper && !has_one_damper(scene) && arguments.given(option))
+        arguments.reject(option, "is for one damper: " + *name + " has a list, which sets their numbers");
+      else if (number.of_damper && is_replaced(scene.damper(), key.name) && arguments.given(option))
+        arguments.reject(option, "has no effect: " + *name + " has a table in place of it");
+    } else if (arguments.given(option) && std::ranges::count(stops_of_scene, key.name) == 0) {
+      arguments.reject(option, filled("is of a scene in units: needs one, by --scene{}",
+                                      key.in_units->becomes.empty() || key.name == "clearance"
+                                          ? ""
+                                          : "; dimensionless " + option_of(key.in_units->becomes)));
+    }
   }
   if (stops == Stops::ignored) {
     scene.until_time = 1;  // a scene needs one
@@ -191,19 +293,6 @@ void require_one_linear_damper(const Scene& scene, const std::string& scene_file
           "walls, springs and restitutions with laws of their own are not for this command, which "
           "does not take them into account: leave them out, or use run with --engine cem or "
           "restitution"}});
-}
-
-void reject_options_beside_units(Arguments& arguments, const SceneFile& scene, const std::string& instead) {
-  if (!scene.in_units) return;
-  const auto reject = [&](std::string_view field) {
-    const std::string option = option_of(field);
-    if (arguments.offers(option) && arguments.given(option))
-      arguments.reject(
-          option, filled("is dimensionless, the scene is in units: its file{} sets its numbers", instead));
-  };
-  for (const SceneField& field : scene_fields) reject(field.name);
-  reject("until_time");
-  reject("until_amplitude");
 }
 
 Engine engine_of(Arguments& arguments, const std::vector<Engine>& engines) {
@@ -311,10 +400,11 @@ std::string scenes_folder(Arguments& arguments) {
   return arguments.file("--scenes").value_or(project_file("data/scenes"));
 }
 
-Options scene_options(Stops stops) {
+Options scene_options(Stops stops, const Keys& own) {
   Options options{input_option("--scene", "FILE",
                                "read the scene from a JSON file, dimensionless or in kg, N/m and\nmm; the "
-                               "options below replace its numbers and are always\ndimensionless")};
+                               "options below replace its numbers. Beside a scene in units its\nkeys are "
+                               "options, too, and numbers have a unit: --clearance 12mm")};
   const Scene defaults;
   for (const SceneField& field : scene_fields)
     options.push_back(
@@ -325,6 +415,15 @@ Options scene_options(Stops stops) {
     options.push_back({"--until-amplitude", "A",
                        "stop at the end of the first half cycle below this amplitude;\na number > 0. One of "
                        "the two stops, or both, must be given"});
+  }
+  for (const SceneKey& key : scene_keys(stops, own)) {
+    if (key.name != key.in_units->name || key.dimensionless) continue;
+    std::string type = "X" + std::string(unit_of(key.in_units->dimension, true));
+    std::erase(type, ' ');
+    options.push_back({.name = option_of(key.name),
+                       .type = type,
+                       .help = filled("beside a scene in units: {}", key.in_units->meaning),
+                       .in_help = false});
   }
   return in_group("Scene", std::move(options));
 }

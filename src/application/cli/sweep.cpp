@@ -23,8 +23,8 @@ double seconds_since(Clock::time_point begin) {
 }
 
 // Reads FROM:TO:N, FROM:TO:N:log or V,V,...
-std::optional<GridAxis> axis_of(Arguments& arguments, const std::string& text,
-                                const std::vector<Variable>& variables) {
+std::optional<GridAxis> axis_of(Arguments& arguments, const std::string& text, const SceneFile& scene) {
+  const std::vector<Variable> variables = variables_of(scene);
   const auto varied = varied_of(arguments, text, texts_of(variables, &Variable::name));
   if (!varied) return std::nullopt;
   GridAxis axis;
@@ -36,17 +36,22 @@ std::optional<GridAxis> axis_of(Arguments& arguments, const std::string& text,
     axis.spacing = Spacing::logarithmic;
     values.resize(values.size() - logarithmic.size());
   }
+  QuantityReader read{.dimension = axis.variable.dimension, .scales = scene.scales};
   bool is_valid = true;
   if (is_range) {
-    const auto range = parse_triple(values);
+    const auto range = parse_triple(values, read);
     is_valid = range && range->first < range->second && range->count >= 2 &&
                range->count <= most_axis_values &&
                !(axis.spacing == Spacing::logarithmic && !(range->first > 0));
     if (is_valid) axis.from = range->first, axis.to = range->second, axis.count = range->count;
   } else {
-    const auto listed = parse_numbers(values, ',');
+    const auto listed = parse_quantities(values, read, ',');
     is_valid = listed.has_value();
     axis.values = listed.value_or(std::vector<double>{});
+  }
+  if (!read.problem.empty()) {
+    arguments.reject("--vary", axis.variable.name + ": " + read.problem);
+    return std::nullopt;
   }
   if (!is_valid) {
     arguments.reject("--vary", filled("must be NAME=FROM:TO:N, NAME=FROM:TO:N:log or NAME=V,V,... with FROM "
@@ -72,8 +77,17 @@ void read_kept(Arguments& arguments, Plan& plan) {
     return;
   }
   for (const std::string_view each : parts_of(list)) {
-    const QuantityReading reading = read_quantity(each);
-    if (reading.kept) {
+    // The amplitude or loss factor behind the =, which read_quantity() takes in the unit of the scene's file.
+    const std::size_t equals = std::min(each.find('='), each.size());
+    const std::string name(each.substr(0, equals));
+    QuantityReader read{.scales = plan.scene.scales};
+    for (const Quantity& quantity : all_quantities())
+      if (quantity.name == name) read.dimension = quantity.at.value_or(Dimension::ratio);
+    const auto at = equals < each.size() ? read(each.substr(equals + 1)) : std::nullopt;
+    const QuantityReading reading = read_quantity(at ? name + '=' + number_text(*at) : std::string(each));
+    if (!read.problem.empty()) {
+      arguments.reject("--keep", name + ": " + read.problem);
+    } else if (reading.kept) {
       plan.quantities.push_back(*reading.kept);
     } else {
       arguments.reject("--keep", reading.problem);
@@ -88,8 +102,9 @@ Options options_of_plan() {
           "--vary", "NAME=FROM:TO:N[:log]",
           "without a plan: the number of the scene that takes N values, both ends\nincluded, equally spaced "
           "or, with :log, by equal ratios; or\nNAME=V,V,... takes those listed. mass_ratio, restitution, "
-          "...; beside a\nscene in units the names and units of its file; clearance_2 is that of\nthe second "
-          "of several dampers. Given several times: all combinations"),
+          "...; beside a\nscene in units the names of its file, with units: "
+          "clearance=5mm:20mm:4;\nclearance_2 is that "
+          "of the second of several dampers. Given several times: all combinations"),
       {"--keep", "LIST",
        "without a plan: the quantities that are kept, with commas between;\n--list-quantities lists them"}};
   return together({in_group("Sweep", options), scene_options(), engine_options()});
@@ -99,9 +114,8 @@ Plan plan_of_options(Arguments& arguments) {
   Plan plan;
   plan.scene = scene_of(arguments, Stops::needed);
   plan.engine = engine_of(arguments);
-  reject_options_beside_units(arguments, plan.scene, ", or --vary,");
   for (const std::string& text : arguments.texts("--vary"))
-    if (auto axis = axis_of(arguments, text, variables_of(plan.scene))) plan.grid.push_back(std::move(*axis));
+    if (auto axis = axis_of(arguments, text, plan.scene)) plan.grid.push_back(std::move(*axis));
   if (!arguments.given("--vary")) arguments.reject("--vary", "it or a plan must be given: what is to vary?");
   read_kept(arguments, plan);
   arguments.finish();
@@ -252,12 +266,12 @@ int make_sweep(Arguments& arguments) {
   const bool dry_run = arguments.flag("--dry-run");
   const auto output = arguments.file("--output");
   if (!output && !dry_run) arguments.reject("--output", "must be given: the table is written there");
-  head.plan = plan_of(arguments);
   require_known_format(arguments, output);
   const std::string description = output.value_or("") + ".json";
   const std::vector<fs::path> inputs{arguments.text("PLAN").value_or(""), scene_name_of(arguments)};
   arguments.reject_overwriting("--output", output, inputs);
   if (output) arguments.reject_overwriting("--output", description, inputs);
+  head.plan = plan_of(arguments);
   arguments.finish();
   if (dry_run) {
     print_size(head.plan, rows_of_part(head.plan, head.part, head.parts), threads);
@@ -314,7 +328,7 @@ Command sweep_command() {
           R"(Each run has a row: its number, the numbers that vary, the quantities, "end" and "problem". A run that
 fails has the reason there, and the sweep goes on. The table has the same bytes with any number of threads
 or parts, interrupted or not. Lengths given and kept are in units of the clearance, beside a scene in units
-in mm; --list-quantities has the other units.
+in mm, and given with their unit, time_to_amplitude=6mm; --list-quantities has the other units.
 
 Examples:
   impact-damper sweep --until-amplitude 0.03 --vary mass_ratio=0.005:0.08:40:log \

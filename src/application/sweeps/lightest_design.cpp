@@ -297,8 +297,8 @@ SceneInUnits with_defaults(SceneInUnits scene) {
   const Scene otherwise;
   if (!scene.damper().restitution) scene.damper().restitution = otherwise.damper().restitution;
   if (!scene.damping && !scene.damping_ratio) scene.damping_ratio = otherwise.damping_ratio;
-  if (!scene.damper().contact_stiffness && scene.stiffness)
-    scene.damper().contact_stiffness = otherwise.damper().wall_stiffness * *scene.stiffness;
+  if (const auto stiffness = stiffness_of(scene); stiffness && !scene.damper().contact_stiffness)
+    scene.damper().contact_stiffness = otherwise.damper().wall_stiffness * *stiffness;
   for (auto* number : {&scene.initial_displacement, &scene.initial_velocity})
     if (!*number) *number = 0;
   return scene;
@@ -415,7 +415,7 @@ Plan search_plan(const DesignQuestion& question, double time, std::vector<double
   // The run must include the end of a half cycle whose peak is in time, even with the heaviest mass stuck.
   const SceneInUnits& scene = question.scene;
   const double longest_period =
-      2 * std::numbers::pi * std::sqrt((*scene.mass + masses.back()) / *scene.stiffness);
+      2 * std::numbers::pi * std::sqrt((*scene.mass + masses.back()) / *stiffness_of(scene));
   Plan plan;
   plan.scene = scene_of_design(question, {masses.front(), clearances.front()}, time + longest_period);
   plan.engine = question.engine;

@@ -83,7 +83,7 @@ std::optional<double> Variable::of(const SceneFile& scene) const {
 
 void Variable::set(SceneFile& scene, double value) const {
   if (scene.in_units)
-    number_in_units.in(*scene.in_units) = value;
+    set_number(*scene.in_units, number_in_units, value);
   else
     number.in(scene.scene) = value;
 }
@@ -99,6 +99,7 @@ std::vector<Variable> variables_of(const SceneFile& scene) {
         if (!field.number.of_damper || !is_replaced(scene.in_units->dampers[i], field.name))
           variables.push_back({.name = std::string(field.name) + (in_list ? "_" + std::to_string(i + 1) : ""),
                                .unit = unit_of(field.dimension, true),
+                               .dimension = field.dimension,
                                .range = field.range,
                                .number_in_units = {field.number, i}});
     }
@@ -331,6 +332,10 @@ SceneFile read_scene_of(ObjectReader& object, const std::filesystem::path& folde
     object.reject("scene", "it or scene_file must be given");
     return {};
   }
+  if (object.is_text("scene")) {
+    object.reject("scene", "must be an object; the name of a file is given as \"scene_file\"");
+    return {};
+  }
   ObjectReader scene = object.required_object("scene");
   return read_scene_object(scene, &folder);
 }
@@ -340,6 +345,10 @@ Plan read_fields(ObjectReader& object, const std::filesystem::path& folder, cons
   if (object.require("schema")) object.word("schema", {plan_schema});
   object.optional("description", plan.description);
   plan.scene = read_scene_of(object, folder, find);
+  if (object.is_text("scene")) {
+    object.keys();  // which say nothing without the scene's numbers
+    return plan;
+  }
   if (auto engine = object.optional_object("engine"))
     if (const auto read = read_engine(*engine, Lacking::any_or_null)) plan.engine = *read;
   const std::vector<Variable> variables = variables_of(plan.scene);

@@ -34,6 +34,7 @@ class JsonWriter;    // json_writer.hpp
 struct Variable {
   std::string name{};
   std::string_view unit{};          // "" without one, and in a dimensionless scene
+  Dimension dimension{};            // a ratio in a dimensionless scene
   NumberRange range{};              // its valid values
   SceneNumber number{};             // of a dimensionless scene
   NumberInUnits number_in_units{};  // of one in units

@@ -33,8 +33,8 @@ std::string bare(std::string_view word) {
 }
 
 // The symbols of docs/mathematics.md and their names at the interface, first the dimensionless ones, then
-// those with units.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 26> symbols{
+// those with units; and words that have another name elsewhere.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 30> symbols{
     {{"nu", "mass_ratio"},
      {"e", "restitution"},
      {"zeta", "damping_ratio"},
@@ -60,7 +60,31 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 26> symbols{
      {"gamma", "weight"},
      {"epsilon", "clearance"},
      {"gap", "clearance"},
-     {"h", "time_step"}}};
+     {"h", "time_step"},
+     // Options of the command line and keys of plans.
+     {"vary", "grid"},
+     {"grid", "vary"},
+     {"keep", "quantities"},
+     {"quantities", "keep"}}};
+
+// Returns the part of a bare name behind its last underscore; all of it without one.
+std::string_view last_part(std::string_view name) { return name.substr(name.rfind('_') + 1); }
+
+// Returns the unit that a bare name in lower case ends in, "mm" of "x_mm" and "until_millimeters"; "" if
+// none.
+std::string_view unit_at_end(std::string_view name) {
+  constexpr auto units = std::to_array<std::string_view>(
+      {"m metre metres meter meters", "mm millimetre millimetres millimeter millimeters",
+       "cm centimetre centimetres centimeter centimeters", "um micrometres micrometers", "in inch inches",
+       "s sec second seconds", "ms millisecond milliseconds", "min minute minutes", "h hour hours",
+       "kg kilogram kilograms", "g gram grams", "n newton newtons", "hz hertz", "deg degrees",
+       "rad radians"});
+  if (name.find('_') == std::string_view::npos) return {};
+  for (const std::string_view each : units)
+    if (const auto words = parts_of(each, ' '); std::ranges::find(words, last_part(name)) != words.end())
+      return words.front();
+  return {};
+}
 
 // Whether `word` begins one of the parts of `name` between underscores: "force" in "exciting_force".
 bool begins_a_part(std::string_view word, std::string_view name) {
@@ -165,10 +189,14 @@ std::string in_lower_case(std::string_view text) {
   return lower;
 }
 
-std::optional<std::string_view> nearest(std::string_view word, const std::vector<std::string_view>& known) {
+std::optional<std::string_view> nearest(std::string_view word, const std::vector<std::string_view>& all) {
   if (word.size() > 100) return std::nullopt;
   const std::string as_given = bare(word), asked = in_lower_case(as_given);
   if (asked.empty()) return std::nullopt;
+  std::vector<std::string_view> known = all;
+  if (const std::string_view unit = unit_at_end(asked); !unit.empty())
+    std::erase_if(known,
+                  [&](std::string_view each) { return unit_at_end(in_lower_case(bare(each))) != unit; });
   for (const auto& [symbol, name] : symbols) {
     if (as_given != symbol) continue;
     for (const std::string_view candidate : known)
@@ -195,9 +223,21 @@ std::optional<std::string_view> nearest(std::string_view word, const std::vector
   return std::nullopt;
 }
 
-std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known) {
-  const auto meant = nearest(word, known);
-  return meant ? ", did you mean " + std::string(*meant) + "?" : "";
+std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known,
+                         std::string_view quote) {
+  std::vector<std::string> meant;
+  const auto add = [&](std::string_view each) {
+    meant.push_back(std::string(quote).append(each).append(quote));
+  };
+  const std::string asked = in_lower_case(bare(word));
+  for (const std::string_view each : known)
+    if (const std::string name = in_lower_case(bare(each)); name != asked && last_part(name) == asked)
+      add(each);
+  if (meant.size() < 2) {
+    meant.clear();
+    if (const auto one = nearest(word, known)) add(*one);
+  }
+  return meant.empty() ? "" : ", did you mean " + listed({meant.begin(), meant.end()}, "or") + "?";
 }
 
 }  // namespace impact_damper

@@ -101,11 +101,10 @@ class JsonProblems {
           suggested(opened.suggested.begin(), opened.suggested.end());
       for (const auto& item : opened.object->items()) {
         if (opened.known.contains(item.key())) continue;
-        auto meant = nearest(item.key(), known);
-        if (!meant) meant = nearest(item.key(), suggested);
+        std::string meant = did_you_mean(item.key(), known, "\"");
+        if (meant.empty()) meant = did_you_mean(item.key(), suggested, "\"");
         all.add(opened.pointer + '/' + json_token(item.key()),
-                meant ? "unknown key, did you mean \"" + std::string(*meant) + "\"?"
-                      : "unknown key, allowed are: " + list(known));
+                "unknown key" + (meant.empty() ? ", allowed are: " + list(known) : meant));
       }
     }
     all.throw_if_any();
@@ -527,6 +526,9 @@ bool ObjectReader::optional(std::string_view key, std::vector<std::array<double,
 bool ObjectReader::is_array(std::string_view key) const {
   return holds(key) && (*object_)[std::string(key)].is_array();
 }
+bool ObjectReader::is_text(std::string_view key) const {
+  return holds(key) && (*object_)[std::string(key)].is_string();
+}
 
 std::optional<std::size_t> ObjectReader::word(std::string_view key,
                                               const std::vector<std::string_view>& words) {
@@ -538,11 +540,11 @@ std::optional<std::size_t> ObjectReader::word(std::string_view key,
     list += (i == 0 ? "" : ", ") + in_quotes(words[i]);
   }
   constexpr std::size_t at_a_glance = 10;
-  const auto meant = value->is_string() && words.size() > at_a_glance
-                         ? nearest(value->get_ref<const std::string&>(), words)
-                         : std::nullopt;
-  reject(key, meant ? "unknown, did you mean " + in_quotes(*meant) + "? Got " + described(*value)
-                    : "must be one of " + list + ", got " + described(*value));
+  const std::string meant = value->is_string() && words.size() > at_a_glance
+                                ? did_you_mean(value->get_ref<const std::string&>(), words, "\"")
+                                : "";
+  reject(key, meant.empty() ? "must be one of " + list + ", got " + described(*value)
+                            : "unknown" + meant + " Got " + described(*value));
   return std::nullopt;
 }
 

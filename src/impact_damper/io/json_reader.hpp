@@ -84,7 +84,9 @@ class ObjectReader {
 
   // Reads at most `most` arrays of two numbers each.
   bool optional(std::string_view key, std::vector<std::array<double, 2>>& target, std::size_t most);
-  bool is_array(std::string_view key) const;  // whether there is an array; leaves the key unknown
+  // Whether there is an array, a text; they leave the key unknown.
+  bool is_array(std::string_view key) const;
+  bool is_text(std::string_view key) const;
 
   // Reads one of the words name_of(value) gives for the `allowed` values.
   template <Enumeration Enum>

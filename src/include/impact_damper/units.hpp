@@ -41,6 +41,11 @@ enum class Dimension {
 };
 // Returns the name of its unit, "" without one: "mm/s" in a scene in units, else "epsilon Omega_n".
 std::string_view unit_of(Dimension dimension, bool in_units);
+// Reads a number with one of the units that engineers write behind it, "12mm", "1.2 cm", as a number in
+// unit_of(dimension, true). Absent if it is none.
+std::optional<double> parse_quantity(std::string_view text, Dimension dimension);
+// Returns the names of these units, first unit_of(dimension, true): "mm, um, cm, m or in"; "" without any.
+std::string written_units(Dimension dimension);
 std::string with_unit(const std::string& number, std::string_view unit);  // "12 mm", or "12" if unit is ""
 // Returns the name of its SI unit as the end of another name, "" without one: "_m_per_s".
 std::string_view suffix_of(Dimension dimension);
@@ -86,7 +91,8 @@ inline constexpr double standard_gravity = 9.80665;  // m/s^2
 // Every number that may be given; an absent one has the default that its comment names. Allowed values:
 // unit_fields.
 struct SceneInUnits {
-  std::optional<double> mass, stiffness;         // kg, N/m: both required
+  // kg, N/m, Hz: required are the mass and one of the two others; f stands for K = M (2 pi f)^2.
+  std::optional<double> mass, stiffness, natural_frequency;
   std::optional<double> damping, damping_ratio;  // N s/m, or as in Scene; at most one; none: undamped
   // Each is 0 if absent (unlike Scene::x0, whose default is 6).
   std::optional<double> initial_displacement, initial_velocity;  // of the primary mass; mm, mm/s
@@ -118,18 +124,24 @@ struct UnitField {
 
   static bool is_absent(double) { return false; }  // as of a SceneField; what is given is written
 };
-extern const std::array<UnitField, 21> unit_fields;
+extern const std::array<UnitField, 22> unit_fields;
 
 // The problem of a number of a damper that is given beside a list.
 inline constexpr std::string_view beside_dampers =
     "must not be given beside dampers, each of which has its own";
 
 // The problems of a scene in units, one entry per invalid field, as by problems_of(Scene): required numbers
-// that are missing, numbers out of range, both dampings given, no stop, and numbers that make a Scene which
-// is not valid. Empty means that the two functions below may be called; otherwise their behaviour is
-// undefined.
+// that are missing, numbers out of range, two numbers of which one stands for the other, no stop, and numbers
+// that make a Scene which is not valid. Empty means that the two functions below may be called; otherwise
+// their behaviour is undefined.
 std::vector<Problem> problems_of(const SceneInUnits& scene);
 
+// Sets a number, and takes away the one that it stands in place of: damping and damping_ratio, stiffness and
+// natural_frequency.
+void set_number(SceneInUnits& scene, const NumberInUnits& number, double value);
+
+// Returns K in N/m, given or by the natural frequency; absent if it is not known.
+std::optional<double> stiffness_of(const SceneInUnits& scene);
 Scales scales_of(const SceneInUnits& scene);
 Scene dimensionless(const SceneInUnits& scene);
 

@@ -46,9 +46,12 @@ std::string in_lower_case(std::string_view text);  // ASCII
 // Returns the word of `known` that `word` most likely means: the name of the symbol `word` (nu: mass_ratio),
 // else the nearest if it is near enough, else the first one with a part that begins with `word` (force:
 // exciting_force). Options and keys count as the same, "--mass-ratio" as "mass_ratio"; capitals decide only
-// between words that are equally near without them. Absent if there is none.
+// between words that are equally near without them. A word that ends in a unit means none with another or
+// without one: x_cm is not x_mm. Absent if there is none.
 std::optional<std::string_view> nearest(std::string_view word, const std::vector<std::string_view>& known);
-// Returns ", did you mean WORD?" with that word, or "" if there is none.
-std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known);
+// Returns ", did you mean WORD?" with that word, between quotes if they are given; "" if there is none. Where
+// `word` is the last part of several, these: "frequency" is natural_frequency or exciting_frequency.
+std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known,
+                         std::string_view quote = "");
 
 }  // namespace impact_damper

@@ -9,7 +9,7 @@
 //
 // never both in one file, except restitution and damping_ratio, which mean the same in both. A key that is
 // left out has the default of Scene or SceneInUnits. One of the two stops must be given, and in units mass,
-// stiffness, secondary_mass and clearance. An optional "description" says in a sentence what the scene is. A
+// stiffness or natural_frequency, secondary_mass and clearance. An optional "description" says in a sentence what the scene is. A
 // file may have at most 1 MiB (scene_kind); a text given to parse_scene() may be longer.
 //
 // Several dampers are a list of objects, "dampers", whose keys are those of scene_damper_fields or of the
