@@ -10,7 +10,7 @@ import signal
 import subprocess
 import time
 
-from trial import call, demand, demand_valid, finish, folder, has_its_digest, read, read_json, source, start, write
+from trial import call, demand, demand_valid, finish, folder, has_its_digest, program, read, read_json, run, source, start, write
 
 
 def wait_for_rows(name, least):
@@ -82,13 +82,13 @@ for row in [row for row in rows if row not in wrong][::97]:
     scene = {**read_json("mast.json"), "clearance": float(row["clearance_sampled"]),
              "restitution": float(row["restitution"]), "secondary_mass": float(row["secondary_mass"])}
     write("scene.json", scene)
-    run = json.loads(call("run", "--scene", "scene.json", "--record", "half_cycles,impacts"))
-    length, second = run["units"]["length_m"] * 1e3, run["units"]["time_s"]
-    half = run["half_cycles"]
+    made = json.loads(call("run", "--scene", "scene.json", "--record", "half_cycles,impacts"))
+    length, second = made["units"]["length_m"] * 1e3, made["units"]["time_s"]
+    half = made["half_cycles"]
     first = next(i for i, amplitude in enumerate(half["amplitude"]) if amplitude * length < 6)
     demand(math.isclose(float(row["time_to_amplitude_6"]), half["peak_time"][first] * second, rel_tol=1e-12), f"{row}: time")
-    demand(int(row["impacts"]) == len(run["impacts"]["time"]), f"{row}: impacts")
-    speed = max(map(abs, run["impacts"]["relative_velocity"])) * length / second
+    demand(int(row["impacts"]) == len(made["impacts"]["time"]), f"{row}: impacts")
+    speed = max(map(abs, made["impacts"]["relative_velocity"])) * length / second
     demand(math.isclose(float(row["largest_impact_speed"]), speed, rel_tol=1e-12), f"{row}: speed")
 
 # So do those of several dampers in units.
@@ -98,8 +98,21 @@ call("sweep", "--scene", "boxes.json", "--vary", "clearance_1=40mm,6cm", "--keep
 for row in csv.DictReader(read("boxes.csv").splitlines()):
     boxes["dampers"][0]["clearance"] = float(row["clearance_1"])
     write("scene.json", boxes)
-    run = json.loads(call("run", "--scene", "scene.json", "--record", "impacts"))
-    demand(int(row["impacts"]) == len(run["impacts"]["time"]), f"{row}: impacts of several dampers in units")
+    made = json.loads(call("run", "--scene", "scene.json", "--record", "impacts"))
+    demand(int(row["impacts"]) == len(made["impacts"]["time"]), f"{row}: impacts of several dampers in units")
+
+# Wall forces of an assumed stiffness are said to be, by the sweep and beside its map; those of a given one are not.
+def said_of_walls(*words):
+    axes = ["--vary", "clearance=5mm,6mm", "--vary", "restitution=0.5,0.6"]
+    swept = run(program, "sweep", "--scene", "mast.json", *axes, *words, "--keep", "largest_wall_force", "-o", "walls.csv")
+    return swept.stderr, call("map", "walls.csv", "--x", "clearance", "--y", "restitution", "--z", "largest_wall_force", "-o", "walls.svg")
+
+
+for said in said_of_walls():
+    demand("largest_wall_force is that of walls 10000 times as stiff as the primary spring, 1.6e+08 N/m: the program's default, an "
+           "assumption." in said, f"assumed walls: {said}")
+for said in said_of_walls("--contact-stiffness", "1e7N/m"):
+    demand("assumption" not in said, f"given walls: {said}")
 
 # Killed, and again, and interrupted: the same command goes on, to the same bytes.
 slow = {**plan, "quantities": plan["quantities"] + ["impact_energy_share"]}

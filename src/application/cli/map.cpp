@@ -322,6 +322,9 @@ std::string summary_of(const Named& named, const Map& map) {
                  best.x_is_at_end ? named.x().name : "", best.x_is_at_end && best.y_is_at_end ? " and " : "",
                  best.y_is_at_end ? named.y().name : "");
   }
+  if (const std::string remark = remark_on_walls(named.plan);
+      !remark.empty() && named.z().quantity->name == "largest_wall_force")
+    text += remark + ".\n";
   return text + filled("points: {} with a value, {} empty, {} failed\n", count(CellState::value),
                        count(CellState::empty), count(CellState::failed));
 }

@@ -191,14 +191,14 @@ std::optional<double> number_in_units(Arguments& arguments, const SceneKey& key,
 void override_in_units(Arguments& arguments, SceneFile& file, const std::string& name,
                        const std::vector<SceneKey>& keys) {
   SceneInUnits& scene = *file.in_units;
-  std::map<const UnitField*, std::string> given;  // the option that sets it
+  std::map<std::string_view, std::string> given;  // the option that sets a number
   std::vector<std::pair<NumberInUnits, double>> numbers;
   bool all_read = true;
   for (const SceneKey& key : keys) {
     const std::string option = option_of(key.name);
     if (!arguments.given(option)) continue;
     const auto value = number_in_units(arguments, key, scene);
-    const auto [before, is_first] = given.try_emplace(key.in_units, option);
+    const auto [before, is_first] = given.try_emplace(key.in_units->name, option);
     const NumberInUnits& number = key.in_units->number;
     all_read = all_read && value;
     if (!is_first)
@@ -216,8 +216,7 @@ void override_in_units(Arguments& arguments, SceneFile& file, const std::string&
   for (const auto& [number, value] : numbers)
     number.in(scene) = value;  // where two stand for each other, both
   for (const Problem& problem : problems_of(scene)) {
-    const auto its =
-        std::ranges::find_if(given, [&](const auto& each) { return each.first->name == problem.field; });
+    const auto its = given.find(problem.field);
     arguments.reject(its == given.end() ? "--scene" : its->second,
                      (its == given.end() ? problem.field + " " : "") + problem.message);
   }

@@ -279,6 +279,8 @@ int make_sweep(Arguments& arguments) {
   }
   require_writable(*output);
   require_writable(description);
+  if (const std::string remark = remark_on_walls(head.plan); !remark.empty())
+    warn("impact-damper sweep", remark);
   head.program = program_identity();
   const fs::path file = share_file(*output, head.part, head.parts);
   {

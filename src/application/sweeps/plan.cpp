@@ -211,6 +211,29 @@ std::vector<PlanColumn> columns_of(const Plan& plan) {
   return columns;
 }
 
+std::string remark_on_walls(const Plan& plan) {
+  const auto is_of_walls = [](std::string_view name) {
+    return name.starts_with("wall_stiffness") || name.starts_with("contact_stiffness");
+  };
+  const Scene& scene = plan.scene.scene;
+  const bool is_kept = std::ranges::any_of(
+      plan.quantities, [](const KeptQuantity& each) { return each.quantity->name == "largest_wall_force"; });
+  const bool is_assumed = std::ranges::any_of(scene.dampers, [](const SceneDamper& damper) {
+    return damper.wall.law == WallForm::linear && damper.wall_stiffness == SceneDamper{}.wall_stiffness;
+  });
+  if (!is_kept || !is_assumed || std::holds_alternative<Restitution>(plan.engine) ||
+      std::ranges::any_of(varied_names(plan), is_of_walls))
+    return "";
+  const auto& scales = plan.scene.scales;
+  return filled(
+      "largest_wall_force is that of walls {} times as stiff as the primary spring{}: the program's default, "
+      "an "
+      "assumption. It goes as the square root of that: give {} of your own walls",
+      SceneDamper{}.wall_stiffness,
+      scales ? filled(", {} N/m", rounded_text(SceneDamper{}.wall_stiffness * scales->stiffness, 4)) : "",
+      scales ? "contact_stiffness" : "wall_stiffness");
+}
+
 RowRange rows_of_part(const Plan& plan, std::int64_t part, std::int64_t parts) {
   const std::int64_t runs = runs_of(plan);
   return {runs * (part - 1) / parts, runs * part / parts};

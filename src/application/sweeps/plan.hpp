@@ -138,6 +138,10 @@ struct RowRange {
 RowRange rows_of_part(const Plan& plan, std::int64_t part, std::int64_t parts);
 inline constexpr std::int64_t most_parts = 1'000'000;
 
+// Returns a sentence about wall forces that the plan keeps and that are those of an assumed wall stiffness; ""
+// where there are none, or the stiffness is given or varies.
+std::string remark_on_walls(const Plan& plan);
+
 // Returns the problems of a plan as a whole, whatever its origin.
 std::vector<Problem> problems_of(const Plan& plan);
 
