@@ -83,8 +83,20 @@ std::invoke_result_t<Parse, std::string_view> Arguments::parsed(const std::strin
   return std::nullopt;
 }
 
+QuantityReader Arguments::reader_of(const std::string& option) const {
+  const auto found = dimensions_.find(option);
+  if (found == dimensions_.end()) return {};
+  return {.dimension = found->second, .scales = scales_, .may_be_bare = true};
+}
+
 std::optional<double> Arguments::number(const std::string& option, NumberRange range) {
-  return parsed(option, range, parse_number, "a finite number");
+  return quantity(option, reader_of(option), range);
+}
+
+std::optional<std::vector<double>> Arguments::numbers(const std::string& option) const {
+  const auto list = text(option);
+  QuantityReader read = reader_of(option);
+  return list ? parse_quantities(*list, read) : std::nullopt;
 }
 
 std::optional<double> Arguments::quantity(const std::string& option, QuantityReader read, NumberRange range) {

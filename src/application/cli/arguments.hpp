@@ -75,6 +75,13 @@ class Arguments {
     else if (const auto given_value = number(option, range))
       value = *given_value;
   }
+  // Lets number() and numbers() of these options read a unit, too, beside a scene in units, which has scales.
+  void may_have_units(const std::optional<Scales>& scales, std::map<std::string, Dimension> dimensions) {
+    scales_ = scales;
+    dimensions_ = std::move(dimensions);
+  }
+  // Returns the numbers A:B:... of an option; absent, without a problem noted, unless all are valid.
+  std::optional<std::vector<double>> numbers(const std::string& option) const;
   // Returns the file of an option, or rejects that it is not given: "must be given: WHAT".
   std::optional<std::string> required_file(const std::string& option, const std::string& what);
   // Returns the files of an argument and those after the named arguments, which are no option with many
@@ -98,7 +105,12 @@ class Arguments {
   std::invoke_result_t<Parse, std::string_view> parsed(const std::string& option, NumberRange range,
                                                        Parse parse, const char* kind);
 
+  // Reads the numbers of an option.
+  QuantityReader reader_of(const std::string& option) const;
+
   std::map<std::string, std::vector<std::string>> options_;
+  std::optional<Scales> scales_;
+  std::map<std::string, Dimension> dimensions_;
   std::vector<std::string> more_;
   std::vector<Problem> problems_;
 };

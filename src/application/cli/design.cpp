@@ -16,6 +16,13 @@ const Keys searched{"secondary_mass", "clearance"};  // of which the command has
 SceneFile scene_with_one_damper(Arguments& arguments) {
   SceneFile file = scene_of(arguments, Stops::ignored, searched);
   require_one_damper(file.scene, scene_name_of(arguments));
+  using enum Dimension;
+  arguments.may_have_units(file.scales, {{"--to", length},
+                                         {"--from", length},
+                                         {"--upper", length},
+                                         {"--within", time},
+                                         {"--secondary-mass", mass},
+                                         {"--clearance", length}});
   return file;
 }
 
@@ -23,7 +30,8 @@ SceneFile scene_with_one_damper(Arguments& arguments) {
 
 // Reads NAME=W or NAME=W%.
 std::optional<SampledNumber> tolerance_of(Arguments& arguments, const std::string& text,
-                                          const std::vector<Variable>& variables) {
+                                          const std::vector<Variable>& variables,
+                                          const std::optional<Scales>& scales) {
   const auto varied = varied_of(arguments, text, texts_of(variables, &Variable::name), "--tolerance");
   if (!varied) return std::nullopt;
   SampledNumber number;
@@ -32,7 +40,13 @@ std::optional<SampledNumber> tolerance_of(Arguments& arguments, const std::strin
   std::string width = varied->values.value_or("");
   number.relative = width.ends_with('%');
   if (number.relative) width.pop_back();
-  const auto value = parse_number(width);
+  QuantityReader read{.dimension = number.relative ? Dimension::ratio : number.variable.dimension,
+                      .scales = scales};
+  const auto value = read(width);
+  if (!read.problem.empty()) {
+    arguments.reject("--tolerance", number.variable.name + ": " + read.problem);
+    return std::nullopt;
+  }
   if (!value || !(*value > 0) || (number.relative && !(*value < 100))) {
     arguments.reject("--tolerance",
                      "must be NAME=W or NAME=W% with W > 0 and a percentage < 100, got " + in_quotes(text));
@@ -45,7 +59,7 @@ std::optional<SampledNumber> tolerance_of(Arguments& arguments, const std::strin
 DesignRange range_of(Arguments& arguments, const std::string& option, DesignRange otherwise) {
   const auto text = arguments.text(option);
   if (!text) return otherwise;
-  const auto ends = parse_numbers(*text);
+  const auto ends = arguments.numbers(option);
   if (ends && ends->size() == 2 && (*ends)[0] > 0 && (*ends)[0] < (*ends)[1]) return {(*ends)[0], (*ends)[1]};
   arguments.reject(option, "must be LEAST:MOST with 0 < LEAST < MOST, got " + in_quotes(*text));
   return otherwise;
@@ -90,7 +104,7 @@ DesignQuestion question_of(Arguments& arguments) {
   std::vector<std::string> tolerances = arguments.texts("--tolerance");
   if (tolerances.empty()) tolerances = {"restitution=0.1", "clearance=10%"};
   for (const std::string& text : tolerances)
-    if (const auto tolerance = tolerance_of(arguments, text, tolerable(question.in_units)))
+    if (const auto tolerance = tolerance_of(arguments, text, tolerable(question.in_units), file.scales))
       question.tolerances.push_back(*tolerance);
   arguments.read("--neighbours", question.neighbours, within(100, 1e6));
   arguments.read("--seed", question.seed, within(0, 1e15));
@@ -437,7 +451,7 @@ Options own_options() {
       {"--from", "A", "the initial displacement, in mm; default the scene's"},
       repeated_option(
           "--tolerance", "NAME=W[%]",
-          "how far a number of the scene may be off, either way, in its unit or\nin percent of it, all "
+          "how far a number of the scene may be off, either way, with its unit or\nin percent of it, all "
           "deviations being as likely; may be repeated.\nDefault restitution=0.1 and clearance=10%"),
       {"--share", "P",
        filled("of all such deviations this share must be in time; 0.5 to 0.999,\ndefault {}",
