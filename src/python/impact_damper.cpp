@@ -189,7 +189,8 @@ epsilon Omega_n, forces by K epsilon.
   add("file", "a CSV file with such a table");
   add("speed", "at which a wall with a law has the restitution");
   text +=
-      "\n\nIn units. The first four must be given; what else is left out is 0 or as above, "
+      "\n\nIn units. mass, stiffness or natural_frequency, secondary_mass and clearance must be given; what else\nis "
+      "left out is 0 or as above, "
       "exciting_frequency that of\n"
       "the primary system by itself. The Run is dimensionless, history as well:\n";
   for (const impact_damper::UnitField& field : impact_damper::unit_fields) {

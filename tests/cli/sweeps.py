@@ -101,6 +101,11 @@ for row in csv.DictReader(read("boxes.csv").splitlines()):
     made = json.loads(call("run", "--scene", "scene.json", "--record", "impacts"))
     demand(int(row["impacts"]) == len(made["impacts"]["time"]), f"{row}: impacts of several dampers in units")
 
+# A natural frequency stands for the stiffness: twice as high, a decay takes half the time.
+call("sweep", "--scene", "mast.json", "--vary", "natural_frequency=2Hz,4Hz", "--keep", "time_to_amplitude=6mm", "-o", "frequency.csv")
+slow, fast = (float(row["time_to_amplitude_6"]) for row in csv.DictReader(read("frequency.csv").splitlines()))
+demand(math.isclose(slow, 2 * fast, rel_tol=1e-9), f"natural frequency: {slow} s and {fast} s")
+
 # Wall forces of an assumed stiffness are said to be, by the sweep and beside its map; those of a given one are not.
 def said_of_walls(*words):
     axes = ["--vary", "clearance=5mm,6mm", "--vary", "restitution=0.5,0.6"]
