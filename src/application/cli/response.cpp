@@ -158,11 +158,11 @@ using Variables = std::map<std::string, Variable, std::less<>>;
 // those of the only damper of a list without its number, too.
 Variables variables_of(const Scene& scene, const std::optional<Scales>& scales) {
   Variables variables;
-  for (const auto& [name, number, least, most] : numbers_of(scene)) {
-    const SceneField& its = field_of(number);
-    const std::string of_damper = name.substr(its.name.size());  // "_1"
+  for (const NamedSceneNumber& each : numbers_of(scene)) {
+    const SceneField& its = field_of(each.number);
+    const std::string of_damper = each.name.substr(its.name.size());  // "_1"
     const auto add = [&](std::string_view key, Dimension dimension) {
-      const Variable variable{number, within(least, most), dimension, scales};
+      const Variable variable{each.number, within(each.least, each.most), dimension, scales};
       variables[std::string(key) + of_damper] = variable;
       if (scene.dampers.size() == 1) variables[std::string(key)] = variable;
     };

@@ -104,7 +104,7 @@ Options options_of_plan() {
           "or, with :log, by equal ratios; or\nNAME=V,V,... takes those listed. mass_ratio, restitution, "
           "...; beside a\nscene in units the names of its file, with units: "
           "clearance=5mm:20mm:4;\nclearance_2 is that "
-          "of the second of several dampers. Given several times: all combinations"),
+          "of the second of several dampers. Given\nseveral times: all combinations"),
       {"--keep", "LIST",
        "without a plan: the quantities that are kept, with commas between;\n--list-quantities lists them"}};
   return together({in_group("Sweep", options), scene_options(), engine_options()});
