@@ -559,8 +559,10 @@ TEST_CASE("a scene with weight has no map of half a period, and no symmetric orb
 }
 
 TEST_CASE("the stiffer the wall, the nearer the orbit and its multipliers to those of rigid walls") {
-  for (const auto& [friction, static_friction, weight, drag] :
+  for (const std::array<double, 4>& components :
        std::vector<std::array<double, 4>>{{0.15, 0, 0, 0}, {0.15, 0.25, 0.06, 0}, {0.1, 0, 0.06, 0.2}}) {
+    const double friction = components[0], static_friction = components[1], weight = components[2],
+                 drag = components[3];
     Scene scene = sliding(static_friction, weight, friction);
     scene.damper().drag = drag;
     CAPTURE(friction);
