@@ -114,6 +114,7 @@ DesignQuestion question_of(Arguments& arguments) {
       if (!arguments.given(option)) arguments.reject(option, "must be given");
       if (const auto value = arguments.number(option, above(0))) *number = *value;
     }
+  if (question.forced) question.share = forced_share;
   arguments.read("--share", question.share, within(0.5, 0.999));
   question.secondary_mass = range_of(arguments, "--secondary-mass", default_masses(question), true);
   question.clearance =
@@ -124,7 +125,7 @@ DesignQuestion question_of(Arguments& arguments) {
   for (const std::string& text : tolerances)
     if (const auto tolerance = tolerance_of(arguments, text, tolerable(question.in_units)))
       question.tolerances.push_back(*tolerance);
-  if (question.forced) question.neighbours = forced_neighbours;
+  if (question.forced) question.neighbours = forced_neighbours_of(question.share);
   if (!arguments.given("--neighbours"))
     question.most_enlarged = question.forced ? most_enlarged_under_force : most_enlarged;
   arguments.read("--neighbours", question.neighbours, within(100, 1e6));
@@ -150,6 +151,10 @@ std::string peak_text(const DesignQuestion& question, const SteadyPeak& peak) {
                 text_in_unit(question, frequency_in_unit(peak.frequency, question), Dimension::frequency));
 }
 
+std::string wall_force_text(const DesignQuestion& question, const DesignCheck& check) {
+  return check.largest_wall_force ? readable(force_in_unit(*check.largest_wall_force, question)) : "-";
+}
+
 // Of designs under a force: the worst of all first.
 std::string forced_table_of(const DesignQuestion& question, const DesignAnswer& answer) {
   const auto unit = [&](Dimension each) { return std::string(unit_of(each, question.in_units)); };
@@ -165,6 +170,10 @@ std::string forced_table_of(const DesignQuestion& question, const DesignAnswer& 
   }
   rows[0].push_back("meet it");
   rows[1].push_back("and 95 % interval");
+  if (question.has_decay) {
+    rows[0].insert(rows[0].end(), {"impact speed", "wall force"});
+    rows[1].insert(rows[1].end(), {unit(Dimension::velocity), unit(Dimension::force)});
+  }
   for (const FoundDesign& each : answer.designs) {
     const DesignCheck& check = each.check;
     const auto amplitude = [](const std::optional<double>& number) {
@@ -185,6 +194,8 @@ std::string forced_table_of(const DesignQuestion& question, const DesignAnswer& 
         row.push_back(time_text(number));
     row.push_back(filled("{} of {}, {} to {}", check.in_time, check.neighbours,
                          rounded_text(100 * check.share.low, 4), percent(check.share.high, 4)));
+    if (question.has_decay)
+      row.insert(row.end(), {readable(check.largest_impact_speed), wall_force_text(question, check)});
     rows.push_back(row);
   }
   return aligned(rows);
@@ -210,8 +221,7 @@ std::string table_of(const DesignQuestion& question, const DesignAnswer& answer)
                 check.neighbours == question.neighbours ? number_text(double(check.in_time))
                                                         : filled("{} of {}", check.in_time, check.neighbours),
                 rounded_text(100 * check.share.low, 4), percent(check.share.high, 4)),
-         readable(check.largest_impact_speed),
-         check.largest_wall_force ? readable(force_in_unit(*check.largest_wall_force, question)) : "-"});
+         readable(check.largest_impact_speed), wall_force_text(question, check)});
   }
   return aligned(rows);
 }
@@ -601,8 +611,9 @@ Options own_options() {
       {"--frequencies", "LEAST:MOST", "its frequencies, in Hz"},
       {"--at-most", "A", "the largest steady amplitude allowed at any of these, in mm"},
       {"--share", "P",
-       filled("of all such deviations this share must be in time; 0.5 to 0.999,\ndefault {}",
-              otherwise.share)},
+       filled("of all such deviations this share must be in time, or meet what is asked\nunder a force; 0.5 "
+              "to 0.999, default {}, under a force {}",
+              otherwise.share, forced_share)},
       {"--secondary-mass", "LEAST:MOST",
        filled("where the mass is looked for, in kg; or the mass itself, M, of which the\nclearance is found "
               "with "
@@ -616,7 +627,8 @@ Options own_options() {
        filled(
            "how many random deviations a design is checked with; 100 to 1e6,\ndefault {}, under a force {}. "
            "Only the default is raised where it does\nnot decide, up to {} times, under a force {} times",
-           otherwise.neighbours, forced_neighbours, most_enlarged, most_enlarged_under_force)},
+           otherwise.neighbours, forced_neighbours_of(forced_share), most_enlarged,
+           most_enlarged_under_force)},
       {"--dampers", "N",
        filled("instead: clearances and masses of up to so many dampers, 1 to {}, with\nwhich the least loss "
               "factor from --upper to --to is largest, after a\nrelease from --from. Together they have the "
@@ -656,7 +668,7 @@ Under a force each neighbour has the worst of the steady motions that a sweep of
 then falling, leads to. Only frequencies are followed at which the component at the force's frequency can exceed
 --at-most at all, 25 of them. The largest |x| of a motion that does not repeat is that of 100 periods; one that is not
 steady in min(1000, max(200, 1 / damping ratio)) periods does not meet the requirement. A motion that only another beginning
-leads to is not seen; impact-damper response basin shows them. The impacts under the force have no column.
+leads to is not seen; impact-damper response basin shows them. Impact speed and wall force are those of the decay.
 
 Each line is the lightest design for a time, the first for the time asked: "nominal" is its own time, the next
 column the one within which the share of its neighbours is down, then that of the slowest, and how many are within

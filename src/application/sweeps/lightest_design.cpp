@@ -418,6 +418,10 @@ std::optional<double> failing_clearance(double amplitude, double restitution) {
   return restitution < 1 ? std::optional(amplitude / fold_amplitude(restitution)) : std::nullopt;
 }
 
+std::int64_t forced_neighbours_of(double share) {
+  return std::max<std::int64_t>(200, std::int64_t(std::floor(4 / (1 - share) + 0.5)));
+}
+
 double least_amplitude_of(const DesignQuestion& question) {
   if (!question.forced) return question.amplitude;
   const double forced = question.forced->amplitude;

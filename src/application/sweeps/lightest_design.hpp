@@ -58,7 +58,9 @@ struct DesignQuestion {
   std::int64_t seed = 1;  // >= 0, for the search; the check uses seed + 1
 };
 inline constexpr double most_mass_ratio = 0.2, least_mass_ratio = 0.005;  // of the default range
-inline constexpr std::int64_t forced_neighbours = 400;  // default of a question with steady motions
+// Defaults of a question with steady motions, each of which takes a hundred times as long as a decay.
+inline constexpr double forced_share = 0.95;
+std::int64_t forced_neighbours_of(double share);  // (M15.9) can confirm it with as many
 // Returns the least amplitude that the question asks for.
 double least_amplitude_of(const DesignQuestion& question);
 // Returns the amplitude, mm, up to which friction and weight hold a secondary mass, kg, on the left wall of a
