@@ -96,7 +96,7 @@ for key, unit in (("nominal_time", 0.05), ("largest_impact_speed", 200), ("large
 
 # Under a force: the plans of its check, made by `sweep`, have its numbers, with any number of threads.
 machine = ("design", "--scene", source / "data/examples/machine.json", "--engine", "restitution", "--under-force", 5, "--frequencies", "3.5:5", "--at-most", 2.5,
-           "--from", 20, "--to", 2, "--within", 15, "--share", 0.5, "--neighbours", 100, "--secondary-mass", "2:6", "--clearance", "4:8")
+           "--from", 20, "--to", 2, "--within", 15, "--share", 0.5, "--neighbours", 100, "--secondary-mass", "3.5:4.2", "--clearance", "5:5.4")
 printed = call(*machine, "--threads", 1, "-o", "forced.json", "--write-plan", "steady.json", "--write-decay-plan", "decay.json")
 demand(call(*machine, "--threads", 3, "-o", "n.json") == printed and read("n.json") == read("forced.json"), "under a force: 3 threads: another answer")
 pushed = read_json("forced.json")

@@ -666,7 +666,8 @@ With --dampers each cavity has the friction, the inclination and the drag of the
 Time is counted to the peak of the first half cycle below the amplitude.
 Under a force each neighbour has the worst of the steady motions that a sweep of the frequency from rest, rising and
 then falling, leads to. Only frequencies are followed at which the component at the force's frequency can exceed
---at-most at all, 25 of them. The largest |x| of a motion that does not repeat is that of 100 periods; one that is not
+--at-most at all, 49 of them, 25 in the search. Of a motion that does not repeat |x| is the largest of 100 periods; a
+longer look and more frequencies raise the worst by some percent. A motion that is not
 steady in min(1000, max(200, 1 / damping ratio)) periods does not meet the requirement. A motion that only another beginning
 leads to is not seen; impact-damper response basin shows them. Impact speed and wall force are those of the decay.
 

@@ -667,7 +667,7 @@ Plan forced_plan(const DesignQuestion& question, const Design& design, std::int6
 }
 
 Plan forced_check_plan(const DesignQuestion& question, const Design& design) {
-  return forced_plan(question, design, question.neighbours, question.seed + 1, forced_frequencies);
+  return forced_plan(question, design, question.neighbours, question.seed + 1, forced_check_frequencies);
 }
 
 // (M15.15).
@@ -739,7 +739,7 @@ DesignAnswer find_designs(const DesignQuestion& question, const Threads& threads
   // Few draws are in a search under a force: a heavier design follows on one that the check does not confirm.
   for (int n = 0; question.forced && answer.met && !answer.designs[0].check.confirmed && n < most_heavier;
        ++n) {
-    asked.secondary_mass.least = forced_steps.mass * answer.designs[0].design.secondary_mass;
+    asked.secondary_mass.least = rounded(forced_steps.mass * answer.designs[0].design.secondary_mass);
     if (!(asked.secondary_mass.least < asked.secondary_mass.most)) break;
     const auto heavier = DesignSearch(asked, threads, tell, runs).lightest();
     if (!heavier) break;

@@ -104,7 +104,8 @@ inline constexpr double longest_followed = 10;
 // frequencies. The question must have a force.
 Plan forced_plan(const DesignQuestion& question, const Design& design, std::int64_t draws, std::int64_t seed,
                  std::int64_t count);
-inline constexpr std::int64_t forced_frequencies = 25;  // of a check
+// Numbers of them in the search and in a check.
+inline constexpr std::int64_t forced_frequencies = 25, forced_check_frequencies = 49;
 // Returns the plan of the check under the force.
 Plan forced_check_plan(const DesignQuestion& question, const Design& design);
 // Returns the steady peak of the primary mass alone (M15.15); absent if it is undamped at resonance. The
