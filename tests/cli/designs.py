@@ -94,6 +94,53 @@ demand(scaled["units"]["time"] == "1/Omega_n" and close(first["secondary_mass"] 
 for key, unit in (("nominal_time", 0.05), ("largest_impact_speed", 200), ("largest_wall_force", 160)):
     demand(close(first[key] * unit, best[key], 3 if key != "nominal_time" else 9), f"dimensionless: {key}: {first[key] * unit}")
 
+# Under a force: the plans of its check, made by `sweep`, have its numbers, with any number of threads.
+machine = ("design", "--scene", source / "data/examples/machine.json", "--engine", "restitution", "--under-force", 5, "--frequencies", "3.5:5", "--at-most", 2.5,
+           "--from", 20, "--to", 2, "--within", 15, "--share", 0.5, "--neighbours", 100, "--secondary-mass", "3.5:4.2", "--clearance", "5:5.4")
+printed = call(*machine, "--threads", 1, "-o", "forced.json", "--write-plan", "steady.json", "--write-decay-plan", "decay.json")
+demand(call(*machine, "--threads", 3, "-o", "n.json") == printed and read("n.json") == read("forced.json"), "under a force: 3 threads: another answer")
+pushed = read_json("forced.json")
+demand_valid("design", pushed, "forced.json")
+found = pushed["designs"][0]
+call("sweep", "steady.json", "-o", "steady.csv")
+call("sweep", "decay.json", "-o", "decay.csv")
+steady, decay = ([float(row[column]) for row in csv.DictReader(read(table).splitlines())]
+                 for table, column in (("steady.csv", "worst_steady_amplitude"), ("decay.csv", "time_to_amplitude_2")))
+demand(pushed["met"] and len(steady) == found["neighbours"] == 100, f"under a force: {found}")
+demand(found["worst_amplitude"] == max(steady) and found["amplitude_of_share"] == sorted(steady)[49], f"under a force: {found}")
+demand(found["in_time"] == sum(a <= 2.5 and t <= 15 for a, t in zip(steady, decay)) and found["slowest"] == max(decay), f"under a force: {found}")
+rows = list(csv.DictReader(read("steady.csv").splitlines()))
+worst = max(rows, key=lambda row: float(row["worst_steady_amplitude"]))
+demand(found["worst_frequency"] == float(worst["worst_frequency"]), f"under a force: {found['worst_frequency']}")
+demand(printed.splitlines()[5].split()[:2] == [f"{found['worst_amplitude']:.3g}", f"{found['worst_frequency']:.3g}"], f"the worst is not first: {printed}")
+alone = 5e3 / 83568.6 / (2 * 0.005 * math.sqrt(1 - 0.005**2))
+demand(close(pushed["alone"]["amplitude"], alone), f"alone: {pushed['alone']}, not {alone}")
+
+# The same machine without units, in clearances of 5 mm.
+hertz = math.sqrt(83568.6 / 120) / (2 * math.pi)
+call("design", "--damping-ratio", 0.005, "--x0", 4, "--engine", "restitution", "--under-force", 5 / (83568.6 * 5e-3), "--frequencies", f"{3.5 / hertz}:{5 / hertz}",
+     "--at-most", 0.5, "--share", 0.5, "--neighbours", 100, "--secondary-mass", f"{found['secondary_mass'] / 120}:0.06", "--clearance",
+     f"{found['clearance'] / 5}:1.61", "-o", "scaled.json", code=None)
+scaled = read_json("scaled.json")
+demand_valid("design", scaled, "dimensionless, under a force")
+demand(close(scaled["alone"]["amplitude"] * 5, alone, 9) and scaled["units"]["frequency"] == "Omega_n" and scaled["designs"][0]["time"] is None, f"dimensionless: {scaled}")
+demand(abs(scaled["designs"][0]["worst_frequency"] - 1) < 0.05, f"dimensionless: {scaled['designs'][0]}")
+
+# Not met: what is reached, and what may do.
+said = call("design", "--damping-ratio", 0.02, "--under-force", 0.02, "--frequencies", "0.8:1.2", "--at-most", 0.2, "--secondary-mass", 0.04, "--clearance", "1:1.05",
+            "--engine", "restitution", "--share", 0.5, "--neighbours", 100, "-o", "unmet.json", code=1)
+unmet = read_json("unmet.json")
+demand_valid("design", unmet, "not met under a force")
+demand(not unmet["met"] and unmet["designs"][0]["in_time"] == 0 and unmet["designs"][0]["worst_amplitude"] > 0.2, f"not met under a force: {unmet}")
+demand("A heavier secondary mass, a larger amplitude or narrower tolerances may do." in said and "steady amplitude is 0.5 epsilon at 1 Omega_n" in said,
+       f"not met under a force: {said}")
+
+# No damper is needed: said so at once, in the file too.
+said = call("design", "--scene", "mast.json", "--under-force", 2, "--frequencies", "4:5", "--at-most", 1, "-o", "none.json")
+none = read_json("none.json")
+demand_valid("design", none, "none needed")
+demand("No damper is needed." in said and none["none_needed"] and none["met"] and not none["designs"], f"none needed: {said}")
+
 # Neighbours that cannot decide, however many of them are in time, do not make a design unconfirmed.
 few = call("design", "--scene", "mast.json", "--to", 20, "--within", 5, "--secondary-mass", "6:8", "--clearance", "40:41", "--neighbours", 100, code=1)
 demand("100 neighbours are too few to tell" in few and "give at least --neighbours 381." in few and "not confirmed" not in few, f"few neighbours: {few}")

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "impact_damper/simulate.hpp"
+#include "impact_damper/steady/sweep.hpp"
 
 using namespace impact_damper;
 
@@ -95,6 +96,43 @@ Drawn drawn_of(const DesignQuestion& question, double mass, double clearance, st
 }
 
 void ignore(const std::string&) {}
+
+// The mast pushed with 2 N at 2.5 to 4 Hz: 6.25 mm at 3.18 Hz without a secondary mass.
+DesignQuestion pushed_mast() {
+  DesignQuestion question = mast();
+  question.scene.damping_ratio = 0.01;
+  question.engine = Restitution{};
+  question.has_decay = false;
+  question.forced = ForcedDemand{2, 2.5, 4, 3};
+  question.share = 0.8;
+  question.secondary_mass = {0.4, 4};
+  question.clearance = {5, 5.5};
+  question.neighbours = 100;
+  return question;
+}
+// The scene of a neighbour in mm, at rest, without use of a plan.
+SceneInUnits pushed(const DesignQuestion& question, const Design& design, double restitution) {
+  SceneInUnits scene = question.scene;
+  scene.damper().secondary_mass = design.secondary_mass;
+  scene.damper().clearance = design.clearance;
+  scene.damper().restitution = restitution;
+  scene.initial_displacement = 0;
+  scene.exciting_force = question.forced->force;
+  scene.until_seconds = 1;
+  return scene;
+}
+// The largest steady amplitude, mm, up and down from a state, over frequencies in Hz.
+double steady_worst(const SceneInUnits& units, double least, double most, std::int64_t count,
+                    const SceneState& start, const SteadyRule& rule) {
+  const Scales scales = scales_of(units);
+  const double unit = scales.of(Dimension::frequency);
+  const Axis axis{&Scene::force_frequency, least / unit, most / unit, count};
+  const auto sweeps = sweep(dimensionless(units), Restitution{}, axis, rule, {start}, 2, [](std::int64_t) {});
+  double worst = 0;
+  for (const auto* way : {&sweeps[0].up, &sweeps[0].down})
+    for (const SteadyState& each : *way) worst = std::max(worst, each.means->amplitude * scales.length);
+  return worst;
+}
 
 }  // namespace
 
@@ -428,4 +466,197 @@ TEST_CASE("what is wrong with a question is told") {
   CHECK(fields(wrong([](auto& q) { q.clearance = {50, 25}; })) == Names{"clearance"});
   CHECK(fields(no_neighbours) == Names{"neighbours"});
   CHECK_THROWS_AS(find_designs(no_neighbours, 1, ignore), InvalidArguments);
+}
+
+TEST_CASE("the primary mass alone has the steady peak of its simulated motion") {
+  DesignQuestion question = pushed_mast();
+  question.scene.damping_ratio = 0.1;
+  const double natural = 20 / (2 * M_PI);
+  for (const auto& [least, most] : {std::pair(2.5, 4.0), {3.5, 4.0}, {2.5, 3.0}}) {
+    question.forced->least = least, question.forced->most = most;
+    const SteadyPeak peak = *peak_of_viscous_damping(question);
+    CAPTURE(least);
+    const SceneInUnits scene = pushed(question, {4e-8, 1000}, 0.6);
+    const auto at = [&](double f) { return steady_worst(scene, f, f * (1 + 1e-9), 2, {0, 0, 0.5, 0}, {}); };
+    CHECK(peak.amplitude == doctest::Approx(at(peak.frequency)).epsilon(1e-6));
+    for (double f = least; f <= most; f += 0.05) CHECK(at(f) <= peak.amplitude * (1 + 1e-6));
+    CHECK(std::abs(peak.frequency - std::clamp(natural * std::sqrt(0.98), least, most)) < 1e-12);
+  }
+  question.scene.damping_ratio = 0;
+  question.forced->least = natural - 1, question.forced->most = natural + 1;
+  CHECK_FALSE(peak_of_viscous_damping(question).has_value());
+}
+
+TEST_CASE("no damper is searched for where the primary mass alone meets all") {
+  DesignQuestion question = pushed_mast();
+  question.forced->amplitude = 6.26;
+  DesignAnswer answer = find_designs(question, 2, ignore);
+  CHECK(answer.none_needed);
+  CHECK(answer.met);
+  CHECK(answer.runs == 0);
+  CHECK(answer.designs.empty());
+  CHECK(answer.peak_of_viscous_damping->amplitude == doctest::Approx(6.25).epsilon(1e-3));
+  question.forced->amplitude = 6.24;
+  question.secondary_mass = {3.9, 4};
+  question.clearance = {5, 5.2};
+  question.neighbours = 10;
+  CHECK_FALSE(find_designs(question, 2, ignore).none_needed);
+  // A decay beside it that viscous damping does not end in time: 5.5 s by the closed form.
+  question.forced->amplitude = 6.26;
+  question.has_decay = true;
+  question.time = 5.4;
+  CHECK_FALSE(find_designs(question, 2, ignore).none_needed);
+  question.time = 5.6;
+  CHECK(find_designs(question, 2, ignore).none_needed);
+}
+
+TEST_CASE("no motion exceeds the amplitude at frequencies that a design is not followed at") {
+  const DesignQuestion question = pushed_mast();
+  const ForcedDemand& forced = *question.forced;
+  for (const Design design : {Design{0.4, 6}, Design{1, 4}, Design{1.5, 10}, Design{2.5, 7}}) {
+    const FrequencyRange followed = *forced_check_plan(question, design).forced.frequencies;
+    CAPTURE(design.secondary_mass);
+    REQUIRE(followed.from > forced.least);
+    REQUIRE(followed.to < forced.most);
+    CHECK(followed.count == forced_check_frequencies);
+    for (const double restitution : {0.5, 0.7})
+      for (const auto& [least, most] :
+           {std::pair(forced.least, followed.from), std::pair(followed.to, forced.most)})
+        for (const SceneState& start : {SceneState{0, 0, 0, 0}, SceneState{0.6, 0, 0.3, 0}}) {
+          const SceneInUnits widest =
+              pushed(question, {design.secondary_mass, 1.1 * design.clearance}, restitution);
+          const double worst = steady_worst(widest, least, most, 40, start, {.max_periods = 500});
+          CHECK(worst <= forced.amplitude);
+          CHECK(worst > 0.2 * forced.amplitude);
+        }
+  }
+}
+
+TEST_CASE("no lighter design stays below the amplitude under the force") {
+  const DesignQuestion question = pushed_mast();
+  const DesignAnswer answer = find_designs(question, 2, ignore);
+  REQUIRE(answer.met);
+  const FoundDesign& found = answer.designs.front();
+  CHECK(found.check.confirmed);
+  CHECK(answer.draws == 40);
+  const SteadyRule rule{.tolerance = 1e-6, .longest_period = 4, .max_periods = 200, .mean_periods = 100};
+  // Draws by sweeps of their own, until too many are late.
+  const auto late_of = [&](const Design& design) {
+    const Plan plan = forced_plan(question, design, answer.draws, question.seed, forced_frequencies);
+    const FrequencyRange& range = *plan.forced.frequencies;
+    std::int64_t late = 0;
+    for (std::int64_t i = 0; i < answer.draws && late <= answer.late_allowed; ++i) {
+      const std::vector<double> drawn = run_of(plan, i).values;
+      const SceneInUnits scene = pushed(question, {design.secondary_mass, drawn[1]}, drawn[0]);
+      late += steady_worst(scene, range.from, range.to, range.count, {0, 0, 0, 0}, rule) >
+                      question.forced->amplitude
+                  ? 1
+                  : 0;
+    }
+    return late;
+  };
+  CHECK(late_of(found.design) <= answer.late_allowed);
+  const std::vector<double> coarse = steps_between(question.secondary_mass, 1.2);
+  const auto next = std::ranges::lower_bound(coarse, found.design.secondary_mass);
+  REQUIRE(next != coarse.begin());
+  REQUIRE(next != coarse.end());
+  for (const double mass : steps_between({next[-1], *next}, 1.04))
+    if (mass < found.design.secondary_mass)
+      for (const double clearance : steps_between(question.clearance, 1.1)) {
+        CAPTURE(mass);
+        CAPTURE(clearance);
+        // A draw late at 5 frequencies counts as late in the search, too.
+        const Plan few = forced_plan(question, {mass, clearance}, answer.draws, question.seed, 5);
+        std::int64_t late = late_of({mass, clearance});
+        for (std::int64_t i = 0; i < answer.draws && late <= answer.late_allowed; ++i)
+          late += kept_of(few, run_of(few, i)).numbers[0] > question.forced->amplitude ? 1 : 0;
+        CHECK(late > answer.late_allowed);
+      }
+}
+
+TEST_CASE("what a check says of steady motions is counted from its neighbours") {
+  DesignQuestion question = pushed_mast();
+  question.has_decay = true;
+  question.time = 5;
+  const DesignAnswer answer = find_designs(question, 2, ignore);
+  REQUIRE(answer.met);
+  const FoundDesign& found = answer.designs.front();
+  const Plan forced = forced_check_plan(question, found.design), decay = check_plan(question, found.design);
+  const FrequencyRange& range = *forced.forced.frequencies;
+  std::vector<double> amplitudes;
+  std::int64_t meet = 0;
+  for (std::int64_t i = 0; i < found.check.neighbours; ++i) {
+    const std::vector<double> drawn = run_of(forced, i).values;
+    CHECK(run_of(decay, i).values == drawn);
+    const SceneInUnits scene = pushed(question, {found.design.secondary_mass, drawn[1]}, drawn[0]);
+    amplitudes.push_back(
+        steady_worst(scene, range.from, range.to, range.count, {0, 0, 0, 0}, forced.forced.steady));
+    const auto time = kept_of(decay, run_of(decay, i)).numbers[0];
+    meet += amplitudes.back() <= 3 && time && *time <= 5 ? 1 : 0;
+  }
+  std::ranges::sort(amplitudes);
+  REQUIRE(found.check.neighbours == 100);
+  CHECK(found.check.in_time == meet);
+  CHECK(found.check.worst_peak->amplitude == doctest::Approx(amplitudes.back()).epsilon(1e-12));
+  CHECK(*found.check.amplitude_of_share == doctest::Approx(amplitudes[79]).epsilon(1e-12));
+  CHECK(found.check.worst_peak->frequency >= range.from * (1 - 1e-12));
+  CHECK(found.check.worst_peak->frequency <= range.to * (1 + 1e-12));
+  CHECK(found.check.slowest.has_value());
+}
+
+TEST_CASE("of a given mass the clearance with the least amplitude is found, also where it is too large") {
+  DesignQuestion question = pushed_mast();
+  question.secondary_mass = {1, 1};
+  question.forced->amplitude = 1;
+  const DesignAnswer answer = find_designs(question, 2, ignore);
+  CHECK_FALSE(answer.met);
+  REQUIRE(answer.designs.size() == 1);
+  CHECK(answer.designs[0].design.secondary_mass == 1);
+  const double reached = answer.designs[0].amplitude;
+  CHECK(reached > 1);
+  CHECK(answer.designs[0].check.rejected);
+  CHECK(answer.designs[0].check.in_time == 0);
+  CHECK(std::abs(std::log(reached) / std::log(1.05) - std::round(std::log(reached) / std::log(1.05))) < 1e-9);
+  // With a twentieth less no clearance would do, with what is reached this one does.
+  question.forced->amplitude = reached / 1.05;
+  CHECK_FALSE(find_designs(question, 2, ignore).met);
+  question.forced->amplitude = reached;
+  const DesignAnswer enough = find_designs(question, 2, ignore);
+  REQUIRE(enough.designs.size() == 1);
+  CHECK(enough.designs[0].design == answer.designs[0].design);
+}
+
+TEST_CASE("a check that does not decide is enlarged as far as it may be") {
+  DesignQuestion question = mast();
+  question.share = 0.99;
+  question.secondary_mass = {6, 8};
+  question.neighbours = 100;
+  question.most_enlarged = 3;
+  DesignCheck check = find_designs(question, 2, ignore).designs.front().check;
+  CHECK(check.neighbours == 300);
+  CHECK_FALSE(check.confirmed);
+  question.most_enlarged = 20;
+  check = find_designs(question, 2, ignore).designs.front().check;
+  CHECK(check.neighbours == 400);
+  CHECK(check.confirmed);
+}
+
+TEST_CASE("what is wrong with a question under a force is told") {
+  const auto fields = [](const auto& change) {
+    DesignQuestion question = pushed_mast();
+    change(question);
+    std::set<std::string> names;
+    for (const Problem& problem : problems_of(question)) names.insert(problem.field);
+    return names;
+  };
+  using Names = std::set<std::string>;
+  CHECK(fields([](auto&) {}).empty());
+  CHECK(fields([](auto& q) {
+          q.forced = ForcedDemand{0, 4, 3, -1};
+        }) == Names{"force", "frequencies", "forced_amplitude"});
+  CHECK(fields([](auto& q) { q.forced.reset(); }) == Names{"time"});
+  CHECK(fields([](auto& q) { q.engine = Cem{}; }) == Names{"engine"});
+  CHECK(fields([](auto& q) { q.clearance.most = q.clearance.least; }) == Names{"clearance"});
+  CHECK(fields([](auto& q) { q.secondary_mass.most = q.secondary_mass.least; }).empty());
+  CHECK(fields([](auto& q) { q.scene.damper().friction_coefficient = 0.5; }) == Names{"forced_amplitude"});
 }

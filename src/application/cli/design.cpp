@@ -1,5 +1,6 @@
-// `design`: finds the lightest secondary mass, and its clearance, with which a decay is over in time within
-// tolerances; or, with --dampers, several dampers for a range of amplitudes.
+// `design`: finds the lightest secondary mass, and its clearance, with which a decay is over in time, steady
+// motions under a force stay small, or both, within tolerances; or, with --dampers, several dampers for a
+// range of amplitudes.
 #include <algorithm>
 #include <cmath>
 
@@ -22,7 +23,10 @@ SceneFile scene_with_one_damper(Arguments& arguments) {
                                          {"--upper", length},
                                          {"--within", time},
                                          {"--secondary-mass", mass},
-                                         {"--clearance", length}});
+                                         {"--clearance", length},
+                                         {"--at-most", length},
+                                         {"--under-force", force},
+                                         {"--frequencies", frequency}});
   return file;
 }
 
@@ -56,12 +60,16 @@ std::optional<SampledNumber> tolerance_of(Arguments& arguments, const std::strin
   return number;
 }
 
-DesignRange range_of(Arguments& arguments, const std::string& option, DesignRange otherwise) {
+// Reads LEAST:MOST; or, where one number may be given, that one as both ends.
+DesignRange range_of(Arguments& arguments, const std::string& option, DesignRange otherwise,
+                     bool may_be_one = false) {
   const auto text = arguments.text(option);
   if (!text) return otherwise;
   const auto ends = arguments.numbers(option);
+  if (may_be_one && ends && ends->size() == 1 && ends->front() > 0) return {ends->front(), ends->front()};
   if (ends && ends->size() == 2 && (*ends)[0] > 0 && (*ends)[0] < (*ends)[1]) return {(*ends)[0], (*ends)[1]};
-  arguments.reject(option, "must be LEAST:MOST with 0 < LEAST < MOST, got " + in_quotes(*text));
+  arguments.reject(option, filled("must be LEAST:MOST with 0 < LEAST < MOST{}, got {}",
+                                  may_be_one ? ", or one number > 0" : "", in_quotes(*text)));
   return otherwise;
 }
 
@@ -85,6 +93,31 @@ std::vector<Variable> tolerable(bool in_units) {
   return variables;
 }
 
+// Factors by which a check may be enlarged unless its size is given.
+constexpr std::int64_t most_enlarged = 4, most_enlarged_under_force = 2;
+
+// Returns the demand on steady motions; absent without --under-force.
+std::optional<ForcedDemand> forced_demand_of(Arguments& arguments, const DesignQuestion& question) {
+  if (!arguments.given("--under-force")) {
+    for (const char* option : {"--frequencies", "--at-most"})
+      if (arguments.given(option)) arguments.reject(option, "needs --under-force");
+    return std::nullopt;
+  }
+  for (const char* option : {"--frequencies", "--at-most"})
+    if (!arguments.given(option)) arguments.reject(option, "must be given with --under-force");
+  // Of a dimensionless scene, whose numbers are made ones in units.
+  std::optional<Scales> scales;
+  if (!question.in_units) scales = scales_of(question.scene);
+  ForcedDemand forced;
+  arguments.read("--under-force", forced.force, above(0));
+  const DesignRange frequencies = range_of(arguments, "--frequencies", {1, 2});
+  arguments.read("--at-most", forced.amplitude, above(0));
+  forced.force *= scale_of(Dimension::force, scales);
+  forced.least = frequencies.least * scale_of(Dimension::frequency, scales);
+  forced.most = frequencies.most * scale_of(Dimension::frequency, scales);
+  return forced;
+}
+
 DesignQuestion question_of(Arguments& arguments) {
   DesignQuestion question;
   const SceneFile file = scene_with_one_damper(arguments);
@@ -92,20 +125,28 @@ DesignQuestion question_of(Arguments& arguments) {
   question.scene = with_defaults(file.in_units ? *file.in_units : with_unit_scales(file.scene));
   question.engine = engine_of(arguments);
   if (const auto from = arguments.number("--from", above(0))) question.scene.initial_displacement = *from;
-  for (const auto& [option, number] :
-       {std::pair("--to", &question.amplitude), std::pair("--within", &question.time)}) {
-    if (!arguments.given(option)) arguments.reject(option, "must be given");
-    if (const auto value = arguments.number(option, above(0))) *number = *value;
-  }
+  question.forced = forced_demand_of(arguments, question);
+  question.has_decay = !question.forced || arguments.given("--to") || arguments.given("--within");
+  if (question.has_decay)
+    for (const auto& [option, number] :
+         {std::pair("--to", &question.amplitude), std::pair("--within", &question.time)}) {
+      if (!arguments.given(option)) arguments.reject(option, "must be given");
+      if (const auto value = arguments.number(option, above(0))) *number = *value;
+    }
+  if (question.forced) question.share = forced_share;
   arguments.read("--share", question.share, within(0.5, 0.999));
-  question.secondary_mass = range_of(arguments, "--secondary-mass", default_masses(question));
-  question.clearance = range_of(arguments, "--clearance",
-                                default_clearances(question.amplitude, *question.scene.damper().restitution));
+  question.secondary_mass = range_of(arguments, "--secondary-mass", default_masses(question), true);
+  question.clearance =
+      range_of(arguments, "--clearance",
+               default_clearances(least_amplitude_of(question), *question.scene.damper().restitution));
   std::vector<std::string> tolerances = arguments.texts("--tolerance");
   if (tolerances.empty()) tolerances = {"restitution=0.1", "clearance=10%"};
   for (const std::string& text : tolerances)
     if (const auto tolerance = tolerance_of(arguments, text, tolerable(question.in_units), file.scales))
       question.tolerances.push_back(*tolerance);
+  if (question.forced) question.neighbours = forced_neighbours_of(question.share);
+  if (!arguments.given("--neighbours"))
+    question.most_enlarged = question.forced ? most_enlarged_under_force : most_enlarged;
   arguments.read("--neighbours", question.neighbours, within(100, 1e6));
   arguments.read("--seed", question.seed, within(0, 1e15));
   return question;
@@ -124,7 +165,63 @@ std::string tolerances_text(const DesignQuestion& question) {
   return joined(texts, ", ");
 }
 
+std::string peak_text(const DesignQuestion& question, const SteadyPeak& peak) {
+  return filled("{} at {}", text_in_unit(question, peak.amplitude, Dimension::length),
+                text_in_unit(question, frequency_in_unit(peak.frequency, question), Dimension::frequency));
+}
+
+std::string wall_force_text(const DesignQuestion& question, const DesignCheck& check) {
+  return check.largest_wall_force ? readable(force_in_unit(*check.largest_wall_force, question)) : "-";
+}
+
+// Of designs under a force: the worst of all first.
+std::string forced_table_of(const DesignQuestion& question, const DesignAnswer& answer) {
+  const auto unit = [&](Dimension each) { return std::string(unit_of(each, question.in_units)); };
+  const std::string length = unit(Dimension::length), time = unit(Dimension::time);
+  const std::string share = percent(question.share, 3);
+  Rows rows{{"worst steady", "at", share, "nominal", "secondary mass", "clearance"},
+            {length, unit(Dimension::frequency), length, length, unit(Dimension::mass), length}};
+  if (question.has_decay) {
+    for (const std::string& head : {std::string("slowest"), share, std::string("nominal")}) {
+      rows[0].push_back(head);
+      rows[1].push_back(time);
+    }
+  }
+  rows[0].push_back("meet it");
+  rows[1].push_back("and 95 % interval");
+  if (question.has_decay) {
+    rows[0].insert(rows[0].end(), {"impact speed", "wall force"});
+    rows[1].insert(rows[1].end(), {unit(Dimension::velocity), unit(Dimension::force)});
+  }
+  for (const FoundDesign& each : answer.designs) {
+    const DesignCheck& check = each.check;
+    const auto amplitude = [](const std::optional<double>& number) {
+      return number ? readable(*number) : "not steady";
+    };
+    const auto time_text = [&](const std::optional<double>& number) {
+      return number ? readable(*number) : "> " + readable(longest_followed * question.time);
+    };
+    std::vector<std::string> row{
+        check.worst_peak ? readable(check.worst_peak->amplitude) : "not steady",
+        check.worst_peak ? readable(frequency_in_unit(check.worst_peak->frequency, question)) : "-",
+        amplitude(check.amplitude_of_share),
+        check.nominal_peak ? readable(check.nominal_peak->amplitude) : "not steady",
+        number_text(each.design.secondary_mass),
+        number_text(each.design.clearance)};
+    if (question.has_decay)
+      for (const auto& number : {check.slowest, check.time_of_share, check.nominal_time})
+        row.push_back(time_text(number));
+    row.push_back(filled("{} of {}, {} to {}", check.in_time, check.neighbours,
+                         rounded_text(100 * check.share.low, 4), percent(check.share.high, 4)));
+    if (question.has_decay)
+      row.insert(row.end(), {readable(check.largest_impact_speed), wall_force_text(question, check)});
+    rows.push_back(row);
+  }
+  return aligned(rows);
+}
+
 std::string table_of(const DesignQuestion& question, const DesignAnswer& answer) {
+  if (question.forced) return forced_table_of(question, answer);
   const auto unit = [&](Dimension each) { return std::string(unit_of(each, question.in_units)); };
   const std::string time = unit(Dimension::time);
   Rows rows{{"within", "secondary mass", "clearance", "nominal", percent(question.share, 3), "slowest",
@@ -139,26 +236,56 @@ std::string table_of(const DesignQuestion& question, const DesignAnswer& answer)
     rows.push_back(
         {readable(each.time), number_text(each.design.secondary_mass), number_text(each.design.clearance),
          known(check.nominal_time), known(check.time_of_share), known(check.slowest),
-         filled("{}, {} to {}", check.in_time, rounded_text(100 * check.share.low, 4),
-                percent(check.share.high, 4)),
-         readable(check.largest_impact_speed),
-         check.largest_wall_force ? readable(force_in_unit(*check.largest_wall_force, question)) : "-"});
+         filled("{}, {} to {}",
+                check.neighbours == question.neighbours ? number_text(double(check.in_time))
+                                                        : filled("{} of {}", check.in_time, check.neighbours),
+                rounded_text(100 * check.share.low, 4), percent(check.share.high, 4)),
+         readable(check.largest_impact_speed), wall_force_text(question, check)});
   }
   return aligned(rows);
 }
 
+bool mass_is_given(const DesignQuestion& question) {
+  return question.secondary_mass.least == question.secondary_mass.most;
+}
+
 std::string verdict_on(const DesignQuestion& question, const DesignCheck& check) {
-  if (check.confirmed) return "The first is the lightest, and is confirmed by its neighbours.\n";
+  const std::string which =
+      mass_is_given(question) ? "Of this mass the first has the best clearance" : "The first is the lightest";
+  const std::string meets = question.forced ? "meet it" : "are in time";
+  if (check.confirmed) return which + ", and is confirmed by its neighbours.\n";
   if (check.rejected)
-    return "The first is the lightest of the search, but is not confirmed: too few of its neighbours are in "
-           "time.\n";
+    return filled("{} of the search, but is not confirmed: too few of its neighbours {}.\n", which, meets);
   const std::int64_t least = least_neighbours_of(question.share);
-  return filled(
-      "The first is the lightest of the search. {} neighbours are too few to tell whether {} are in "
-      "time:\n{}.\n",
-      question.neighbours, percent(question.share, 3),
-      question.neighbours < least ? filled("give at least --neighbours {}", least)
-                                  : "the interval holds both, give more --neighbours");
+  return filled("{} of the search. {} neighbours are too few to tell whether {} {}:\n{}.\n", which,
+                check.neighbours, percent(question.share, 3), meets,
+                check.neighbours < least ? filled("give at least --neighbours {}", least)
+                                         : "the interval holds both, give more --neighbours");
+}
+
+// Returns a sentence on what steady motions of a check are.
+std::string motions_in_words(const DesignQuestion& question, const DesignAnswer& answer) {
+  if (!question.forced) return "";
+  const Plan plan = forced_check_plan(question, answer.designs.front().design);
+  const FrequencyRange& looked_at = *plan.forced.frequencies;
+  const auto frequency = [&](double f) { return readable(frequency_in_unit(f, question)); };
+  const std::int64_t not_steady = answer.designs.front().check.not_steady;
+  const std::string unknown =
+      not_steady == 0 ? ""
+                      : filled(
+                            "{} of its neighbours have a motion that is not steady, and do not meet the "
+                            "requirement.\n",
+                            not_steady);
+  return unknown +
+         filled(
+             "Worst of the motions from rest at {} frequencies from {} to {}, rising and then falling, {} in "
+             "all\nfor "
+             "each neighbour. Elsewhere the component at the force's frequency is smaller for any motion; a "
+             "motion\n"
+             "that only another beginning leads to is not among them: see impact-damper response basin.\n",
+             looked_at.count, frequency(looked_at.from),
+             with_unit(frequency(looked_at.to), unit_of(Dimension::frequency, question.in_units)),
+             2 * looked_at.count);
 }
 
 // Returns a sentence on the walls that the forces of the table are for.
@@ -178,13 +305,16 @@ std::string walls_in_words(const DesignQuestion& question, const DesignAnswer& a
       text, readable(ratio), question.in_units ? "contact_stiffness" : "--wall-stiffness");
 }
 
-// Returns a sentence on viscous damping alone, if its decay takes at most 1.5 times the time asked for.
+// Returns a sentence on viscous damping alone, for a decay if it takes at most 1.5 times the time asked for.
 std::string viscous_in_words(const DesignQuestion& question, const DesignAnswer& answer) {
   constexpr double nearly = 1.5;
-  const auto& time = answer.time_of_viscous_damping;
-  if (!time || *time > nearly * question.time) return "";
-  return filled("Viscous damping alone, without a secondary mass, takes {}.\n",
-                text_in_unit(question, *time, Dimension::time));
+  std::string text;
+  if (const auto& time = answer.time_of_viscous_damping; time && *time <= nearly * question.time)
+    text += filled("Viscous damping alone, without a secondary mass, takes {}.\n",
+                   text_in_unit(question, *time, Dimension::time));
+  if (const auto& peak = answer.peak_of_viscous_damping)
+    text += filled("Without a secondary mass the steady amplitude is {}.\n", peak_text(question, *peak));
+  return text;
 }
 
 // Returns advice on the bounds that decided the result.
@@ -195,23 +325,26 @@ std::string advice_on(const DesignQuestion& question, const DesignAnswer& answer
     text += filled("Up to {} that secondary mass is held at rest in a cavity of any clearance.\n",
                    text_in_unit(question, held, Dimension::length));
   constexpr double heavier = 1.1;
+  const std::string more = question.forced ? "a larger amplitude" : "more time";
   if (!answer.met)
-    text += locking_amplitude_of(question, heavier * design.secondary_mass) < question.amplitude
-                ? "A heavier secondary mass, more time or narrower tolerances may do.\n"
-                : "More time or narrower tolerances may do.\n";
-  if (answer.met && design.secondary_mass == question.secondary_mass.least)
+    text +=
+        locking_amplitude_of(question, heavier * design.secondary_mass) < least_amplitude_of(question)
+            ? filled("A heavier secondary mass, {} or narrower tolerances may do.\n", more)
+            : filled("{}{} or narrower tolerances may do.\n", question.forced ? "A" : "M", more.substr(1));
+  if (answer.met && !mass_is_given(question) && design.secondary_mass == question.secondary_mass.least)
     text += "The secondary mass is the least of its range: a lighter one may do.\n";
   if (design.clearance == question.clearance.least)
     text += "The clearance is the least of its range: a narrower one may do better.\n";
   if (design.clearance == question.clearance.most) {
     // The closed form is for a mass without friction and weight.
-    const auto failing = locking_amplitude_of(question, design.secondary_mass) > 0
-                             ? std::nullopt
-                             : failing_clearance(question.amplitude, *question.scene.damper().restitution);
+    const auto failing =
+        locking_amplitude_of(question, design.secondary_mass) > 0
+            ? std::nullopt
+            : failing_clearance(least_amplitude_of(question), *question.scene.damper().restitution);
     text += filled(
         "The clearance is the widest of its range: a wider one may do better{}.\n",
         failing ? filled("; with {} impacts fail at {}", text_in_unit(question, *failing, Dimension::length),
-                         text_in_unit(question, question.amplitude, Dimension::length))
+                         text_in_unit(question, least_amplitude_of(question), Dimension::length))
                 : "");
   }
   return text;
@@ -219,30 +352,51 @@ std::string advice_on(const DesignQuestion& question, const DesignAnswer& answer
 
 std::string text_of(const DesignQuestion& question, const DesignAnswer& answer) {
   const auto range = [&](const DesignRange& each, Dimension dimension) {
-    return readable(each.least) + " to " + text_in_unit(question, each.most, dimension);
+    const std::string most = text_in_unit(question, each.most, dimension);
+    return each.least == each.most ? most : readable(each.least) + " to " + most;
   };
+  std::vector<std::string> asked;
+  if (const auto& forced = question.forced)
+    asked.push_back(filled(
+        "at most {} under {} from {} to {}", text_in_unit(question, forced->amplitude, Dimension::length),
+        text_in_unit(question, force_in_unit(forced->force, question), Dimension::force),
+        readable(frequency_in_unit(forced->least, question)),
+        text_in_unit(question, frequency_in_unit(forced->most, question), Dimension::frequency)));
+  if (question.has_decay)
+    asked.push_back(
+        filled("{} to below {} within {}",
+               text_in_unit(question, std::abs(*question.scene.initial_displacement), Dimension::length),
+               text_in_unit(question, question.amplitude, Dimension::length),
+               text_in_unit(question, question.time, Dimension::time)));
+  if (answer.none_needed)
+    return joined(asked, ", and ") + "\nNo damper is needed.\n" + viscous_in_words(question, answer);
   const std::string head =
-      filled("{} to below {} within {} in {} of all cases with {}\n",
-             text_in_unit(question, std::abs(*question.scene.initial_displacement), Dimension::length),
-             text_in_unit(question, question.amplitude, Dimension::length),
-             text_in_unit(question, question.time, Dimension::time), percent(question.share, 3),
+      filled("{} in {} of all cases with {}\n", joined(asked, ", and "), percent(question.share, 3),
              tolerances_text(question)) +
       filled("searched: secondary mass {}, clearance {}\n\n", range(question.secondary_mass, Dimension::mass),
              range(question.clearance, Dimension::length));
   if (answer.designs.empty())
     return head +
-           filled(
-               "No design was found. The heaviest secondary mass takes longer than {} with each clearance.\n",
-               text_in_unit(question, longest_followed * question.time, Dimension::time));
+           (question.forced
+                ? filled("No design was found. The heaviest secondary mass needs more than {} times as much "
+                         "with "
+                         "each clearance.\n",
+                         readable(longest_followed))
+                : filled("No design was found. The heaviest secondary mass takes longer than {} with each "
+                         "clearance.\n",
+                         text_in_unit(question, longest_followed * question.time, Dimension::time))) +
+           viscous_in_words(question, answer);
   const std::string table = table_of(question, answer) + '\n';
-  const std::string verdict = answer.met
-                                  ? verdict_on(question, answer.designs.front().check)
-                                  : filled(
-                                        "No design was found. The heaviest secondary mass is soonest "
-                                        "with this clearance, within {}.\n",
-                                        text_in_unit(question, answer.designs.front().time, Dimension::time));
-  return head + table + walls_in_words(question, answer) + verdict + viscous_in_words(question, answer) +
-         advice_on(question, answer);
+  const std::string verdict =
+      answer.met        ? verdict_on(question, answer.designs.front().check)
+      : question.forced ? "No design was found. The heaviest secondary mass has the least with this "
+                          "clearance.\n"
+                        : filled(
+                              "No design was found. The heaviest secondary mass is soonest "
+                              "with this clearance, within {}.\n",
+                              text_in_unit(question, answer.designs.front().time, Dimension::time));
+  return head + table + motions_in_words(question, answer) + walls_in_words(question, answer) + verdict +
+         viscous_in_words(question, answer) + advice_on(question, answer);
 }
 
 // --- Several dampers for a range of amplitudes ------------------------------------------------------------
@@ -276,7 +430,8 @@ Asked asked_of(Arguments& arguments) {
   Asked asked;
   asked.file = scene_with_one_damper(arguments);
   require_one_linear_damper(asked.file.scene, scene_name_of(arguments));
-  for (const char* option : {"--within", "--share", "--clearance", "--neighbours", "--seed", "--write-plan"})
+  for (const char* option : {"--within", "--share", "--clearance", "--neighbours", "--seed", "--write-plan",
+                             "--write-decay-plan", "--under-force", "--frequencies", "--at-most"})
     if (arguments.given(option)) arguments.reject(option, "is not for several dampers, --dampers");
   for (const Option& option : engine_options())
     if (arguments.given(option.name))
@@ -418,29 +573,45 @@ int design(Arguments& arguments) {
   const Threads threads = threads_of(arguments);
   const std::string scene = scene_name_of(arguments);
   const auto output = output_of(arguments, "--output", {Format::json}, {scene}),
-             plan = output_of(arguments, "--write-plan", {Format::json}, {scene});
+             plan = output_of(arguments, "--write-plan", {Format::json}, {scene}),
+             decay_plan = output_of(arguments, "--write-decay-plan", {Format::json}, {scene});
   reject_same_output(arguments, "--write-plan", plan, "--output", output);
+  reject_same_output(arguments, "--write-decay-plan", decay_plan, "--output", output);
+  reject_same_output(arguments, "--write-decay-plan", decay_plan, "--write-plan", plan);
+  if (decay_plan && !(question.forced && question.has_decay))
+    arguments.reject("--write-decay-plan",
+                     "is for a decay beside a force; of a decay alone give --write-plan");
   arguments.finish();
   if (const auto problems = problems_of(question); !problems.empty())
     reject_as_options(problems, {{"amplitude", "--to"},
                                  {"time", "--within"},
+                                 {"force", "--under-force"},
+                                 {"frequencies", "--frequencies"},
+                                 {"forced_amplitude", "--at-most"},
                                  {"share", "--share"},
                                  {"secondary_mass", "--secondary-mass"},
                                  {"clearance", "--clearance"},
                                  {"tolerance", "--tolerance"}});
-  for (const auto& file : {plan, output}) prepare_output(file);
+  for (const auto& file : {plan, decay_plan, output}) prepare_output(file);
 
   DesignAnswer answer;
   {
     ProgressOnStderr progress("design");
     answer = saying_options([&] { return find_designs(question, threads, std::ref(progress)); });
   }
-  if (plan && !answer.designs.empty())
-    write_output(plan, plan_text(check_plan(question, answer.designs.front().design)));
+  if (!answer.designs.empty()) {
+    DesignQuestion followed = question;
+    followed.neighbours = answer.designs.front().check.neighbours;
+    const Design& first = answer.designs.front().design;
+    if (plan)
+      write_output(plan, plan_text(question.forced ? forced_check_plan(followed, first)
+                                                   : check_plan(followed, first)));
+    if (decay_plan) write_output(decay_plan, plan_text(check_plan(followed, first)));
+  }
   if (output) write_output(output, design_text(question, answer));
-  if (!is_standard_output(output) && !is_standard_output(plan))
+  if (!is_standard_output(output) && !is_standard_output(plan) && !is_standard_output(decay_plan))
     write_standard_output(text_of(question, answer));
-  return answer.met && answer.designs.front().check.confirmed ? 0 : 1;
+  return answer.none_needed || (answer.met && answer.designs.front().check.confirmed) ? 0 : 1;
 }
 
 Options own_options() {
@@ -453,18 +624,30 @@ Options own_options() {
           "--tolerance", "NAME=W[%]",
           "how far a number of the scene may be off, either way, with its unit or\nin percent of it, all "
           "deviations being as likely; may be repeated.\nDefault restitution=0.1 and clearance=10%"),
+      {"--under-force", "F",
+       "also, or instead of --to and --within: a harmonic force of this amplitude,\nin N, under which all "
+       "steady motions shall be small"},
+      {"--frequencies", "LEAST:MOST", "its frequencies, in Hz"},
+      {"--at-most", "A", "the largest steady amplitude allowed at any of these, in mm"},
       {"--share", "P",
-       filled("of all such deviations this share must be in time; 0.5 to 0.999,\ndefault {}",
-              otherwise.share)},
+       filled("of all such deviations this share must be in time, or meet what is asked\nunder a force; 0.5 "
+              "to 0.999, default {}, under a force {}",
+              otherwise.share, forced_share)},
       {"--secondary-mass", "LEAST:MOST",
-       filled("where the mass is looked for, in kg; default {} to {} of the\nprimary mass", least_mass_ratio,
-              most_mass_ratio)},
+       filled("where the mass is looked for, in kg; or the mass itself, M, of which the\nclearance is found "
+              "with "
+              "which the requirement is met best; default {} to {}\nof the primary mass",
+              least_mass_ratio, most_mass_ratio)},
       {"--clearance", "LEAST:MOST",
-       "where the clearance is looked for, in mm; default from the amplitude\n--to up to the clearance with "
+       "where the clearance is looked for, in mm; default from the amplitude\n--to (or --at-most, the "
+       "smaller one) up to the clearance with "
        "which impacts fail at that amplitude"},
       {"--neighbours", "N",
-       filled("how many random deviations a design is checked with; 100 to 1e6,\ndefault {}",
-              otherwise.neighbours)},
+       filled(
+           "how many random deviations a design is checked with; 100 to 1e6,\ndefault {}, under a force {}. "
+           "Only the default is raised where it does\nnot decide, up to {} times, under a force {} times",
+           otherwise.neighbours, forced_neighbours_of(forced_share), most_enlarged,
+           most_enlarged_under_force)},
       {"--dampers", "N",
        filled("instead: clearances and masses of up to so many dampers, 1 to {}, with\nwhich the least loss "
               "factor from --upper to --to is largest, after a\nrelease from --from. Together they have the "
@@ -476,7 +659,10 @@ Options own_options() {
       {"--seed", "N",
        filled("of the random deviations; 0 to 1e15, default {}. The check has others than\nthe search",
               otherwise.seed)},
-      {"--write-plan", "FILE", "write the check of the first design as a plan for impact-damper sweep"},
+      {"--write-plan", "FILE",
+       "write the check of the first design as a plan for impact-damper sweep;\nwith --under-force that of "
+       "steady motions"},
+      {"--write-decay-plan", "FILE", "with --under-force and --to: that of the decay"},
       {"-o,--output", "FILE", "write the designs there as well, as JSON"},
       threads_option()};
   return in_group("Design", std::move(options));
@@ -497,6 +683,12 @@ dimensionless scene lengths are in units of its clearance, masses of the primary
 Its friction and weight hold secondary masses at small amplitudes, with any clearance: --to must lie above them.
 With --dampers each cavity has the friction, the inclination and the drag of the scene's.
 Time is counted to the peak of the first half cycle below the amplitude.
+Under a force each neighbour has the worst of the steady motions that a sweep of the frequency from rest, rising and
+then falling, leads to. Only frequencies are followed at which the component at the force's frequency can exceed
+--at-most at all, 49 of them, 25 in the search. Of a motion that does not repeat |x| is the largest of 100 periods; a
+longer look and more frequencies raise the worst by some percent. A motion that is not
+steady in min(1000, max(200, 1 / damping ratio)) periods does not meet the requirement. A motion that only another beginning
+leads to is not seen; impact-damper response basin shows them. Impact speed and wall force are those of the decay.
 
 Each line is the lightest design for a time, the first for the time asked: "nominal" is its own time, the next
 column the one within which the share of its neighbours is down, then that of the slowest, and how many are within
@@ -504,9 +696,11 @@ the time of the line. Speed and force are the largest of all. A line is missing 
 code 1: no design was found, or the check of the first did not confirm it: too few neighbours are in
 time, or they are too few to decide.
 
-Example:
+Examples:
   impact-damper design --scene data/examples/mast.json --to 6 --within 10 \
     --tolerance restitution=0.1 --tolerance clearance=10%
+  impact-damper design --scene data/examples/machine.json --under-force 5 --frequencies 3.5:5 --at-most 2 \
+    --from 20 --to 2 --within 15
   impact-damper design --scene data/examples/mast.json --dampers 6 --to 2 -o boxes.json)",
       .act = design};
 }
