@@ -239,12 +239,18 @@ def shifted(scene):
         yield [f"--{name.replace('_', '-')}={value!r}" for name, value in numbers.items()]
 
 
+def without_units(options, scene):
+    """The options with the scene as it is run, whose numbers need no units, and without those that set it moving."""
+    write("without_units.json", scene)
+    pairs = [pair for pair in zip(options[::2], options[1::2]) if pair[0][2:].replace("-", "_") not in (*MOVING, "scene")]
+    return ["--scene", "without_units.json", *sum(pairs, ())]
+
+
 def spread(run, options):
     """Greatest and last relative spread of the releases' amplitudes."""
     columns = [run["half_cycles"]["amplitude"]]
-    pairs = [pair for pair in zip(options[::2], options[1::2]) if pair[0][2:].replace("-", "_") not in MOVING]
     for release in shifted(run["scene"]):
-        other = call("run", *sum(pairs, ()), *release)
+        other = call("run", *without_units(options, run["scene"]), *release)
         columns.append(json.loads(other.stdout)["half_cycles"]["amplitude"])
     rows = [sorted(row) for row in zip(*columns)]
     spreads = [(row[-1] - row[0]) / ((row[1] + row[2]) / 2) for row in rows]
@@ -408,7 +414,7 @@ def response(page, text, run, scales):
         told = re.search(f"At its worst frequency, ({number})" + (f".Hz \\(({number})" if scales else ""), page.words["header"])
         omega = min(page.numbers["header"], key=lambda number: abs(number - float(told[told.lastindex])))  # with all its digits
         periods = 4000
-        long = json.loads(call("run", *options, "--force-frequency", repr(omega), "--until-time", repr(periods * 2 * math.pi / omega),
+        long = json.loads(call("run", *without_units(options, scene), "--force-frequency", repr(omega), "--until-time", repr(periods * 2 * math.pi / omega),
                                "--max-half-cycles", "1000000", "--max-impacts", "1000000").stdout)["half_cycles"]
         last = max(a for t, a in zip(long["peak_time"], long["amplitude"]) if t > (periods - 500) * 2 * math.pi / omega) * length
         repeats = any(near(mark[1] / y_unit, worst, pixel) for way in drawn for mark in drawn[way][False])

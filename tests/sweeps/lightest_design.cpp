@@ -472,7 +472,8 @@ TEST_CASE("the primary mass alone has the steady peak of its simulated motion") 
   DesignQuestion question = pushed_mast();
   question.scene.damping_ratio = 0.1;
   const double natural = 20 / (2 * M_PI);
-  for (const auto& [least, most] : {std::pair(2.5, 4.0), {3.5, 4.0}, {2.5, 3.0}}) {
+  for (const auto& range : {std::pair(2.5, 4.0), {3.5, 4.0}, {2.5, 3.0}}) {
+    const double least = range.first, most = range.second;
     question.forced->least = least, question.forced->most = most;
     const SteadyPeak peak = *peak_of_viscous_damping(question);
     CAPTURE(least);

@@ -271,11 +271,10 @@ std::string motions_in_words(const DesignQuestion& question, const DesignAnswer&
   const auto frequency = [&](double f) { return readable(frequency_in_unit(f, question)); };
   const std::int64_t not_steady = answer.designs.front().check.not_steady;
   const std::string unknown =
-      not_steady == 0 ? ""
-                      : filled(
-                            "{} of its neighbours have a motion that is not steady, and do not meet the "
-                            "requirement.\n",
-                            not_steady);
+      not_steady == 0
+          ? ""
+          : filled("Neighbours with a motion that is not steady, which do not meet the requirement: {}.\n",
+                   not_steady);
   return unknown +
          filled(
              "Worst of the motions from rest at {} frequencies from {} to {}, rising and then falling, {} in "

@@ -140,8 +140,8 @@ void find_rates(const VariationalCoefficients& of, const MassesAlongRun& now, do
   }
 }
 
-// Adds what touch (sign 1) or end (-1) of a contact with a compliant wall changes, (M13.25) and (M13.35):
-// `amount` times the jump of the rates, divided by y'.
+// Adds what touch (sign 1) or end (-1) of a contact with a compliant wall changes, (M13.6), (M13.25) and
+// (M13.35): `amount` times the jump of the rates, divided by y'.
 void add_edge(const VariationalCoefficients& of, const MassesAlongRun& now, std::size_t damper, int sign,
               double amount, ChangeOfState& s) {
   const OfDamper& its = of.dampers[damper];
