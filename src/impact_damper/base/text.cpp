@@ -67,22 +67,19 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 30> symbols{
      {"keep", "quantities"},
      {"quantities", "keep"}}};
 
-// Returns the part of a bare name behind its last underscore; all of it without one.
-std::string_view last_part(std::string_view name) { return name.substr(name.rfind('_') + 1); }
-
-// Returns the unit that a bare name in lower case ends in, "mm" of "x_mm" and "until_millimeters"; "" if
-// none.
+// Returns the words for the unit that a bare name in lower case ends in, those for "mm" of "x_mm" and
+// "until_millimeters"; "" if none.
 std::string_view unit_at_end(std::string_view name) {
   constexpr auto units = std::to_array<std::string_view>(
-      {"m metre metres meter meters", "mm millimetre millimetres millimeter millimeters",
-       "cm centimetre centimetres centimeter centimeters", "um micrometres micrometers", "in inch inches",
-       "s sec second seconds", "ms millisecond milliseconds", "min minute minutes", "h hour hours",
-       "kg kilogram kilograms", "g gram grams", "n newton newtons", "hz hertz", "deg degrees",
-       "rad radians"});
-  if (name.find('_') == std::string_view::npos) return {};
+      {" m metre metres meter meters ", " mm millimetre millimetres millimeter millimeters ",
+       " cm centimetre centimetres centimeter centimeters ", " um micrometres micrometers ",
+       " in inch inches ", " s sec second seconds ", " ms millisecond milliseconds ", " min minute minutes ",
+       " h hour hours ", " kg ", " g ", " n ", " hz ", " deg ", " rad "});
+  const std::size_t end = name.rfind('_');
+  if (end == std::string_view::npos) return {};
+  const std::string word = ' ' + std::string(name.substr(end + 1)) + ' ';
   for (const std::string_view each : units)
-    if (const auto words = parts_of(each, ' '); std::ranges::find(words, last_part(name)) != words.end())
-      return words.front();
+    if (each.find(word) != std::string_view::npos) return each;
   return {};
 }
 
@@ -225,19 +222,18 @@ std::optional<std::string_view> nearest(std::string_view word, const std::vector
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known,
                          std::string_view quote) {
-  std::vector<std::string> meant;
+  std::string meant;
   const auto add = [&](std::string_view each) {
-    meant.push_back(std::string(quote).append(each).append(quote));
+    meant.append(meant.empty() ? "" : " or ").append(quote).append(each).append(quote);
   };
-  const std::string asked = in_lower_case(bare(word));
+  const std::string asked = '_' + in_lower_case(bare(word));
   for (const std::string_view each : known)
-    if (const std::string name = in_lower_case(bare(each)); name != asked && last_part(name) == asked)
-      add(each);
-  if (meant.size() < 2) {
+    if (in_lower_case(bare(each)).ends_with(asked)) add(each);
+  if (meant.find(' ') == std::string::npos) {
     meant.clear();
     if (const auto one = nearest(word, known)) add(*one);
   }
-  return meant.empty() ? "" : ", did you mean " + listed({meant.begin(), meant.end()}, "or") + "?";
+  return meant.empty() ? "" : ", did you mean " + meant + "?";
 }
 
 }  // namespace impact_damper
