@@ -587,7 +587,7 @@ const RecordUnit* find_unit(std::string_view text) {
     return std::ranges::any_of(parts_of(unit.names, ' '),
                                [&](std::string_view name) { return in_lower_case(name) == plain; });
   });
-  return found == units.end() ? nullptr : &*found;
+  return found == units.end() ? nullptr : found;
 }
 
 RecordColumns columns_of(const std::string& name, std::string_view bytes, bool has_rate) {

@@ -186,28 +186,28 @@ std::string in_lower_case(std::string_view text) {
   return lower;
 }
 
-std::optional<std::string_view> nearest(std::string_view word, const std::vector<std::string_view>& all) {
+std::optional<std::string_view> nearest(std::string_view word, const std::vector<std::string_view>& known) {
   if (word.size() > 100) return std::nullopt;
   const std::string as_given = bare(word), asked = in_lower_case(as_given);
   if (asked.empty()) return std::nullopt;
-  std::vector<std::string_view> known = all;
+  std::vector<std::string_view> candidates = known;
   if (const std::string_view unit = unit_at_end(asked); !unit.empty())
-    std::erase_if(known,
+    std::erase_if(candidates,
                   [&](std::string_view each) { return unit_at_end(in_lower_case(bare(each))) != unit; });
   for (const auto& [symbol, name] : symbols) {
     if (as_given != symbol) continue;
-    for (const std::string_view candidate : known)
+    for (const std::string_view candidate : candidates)
       if (bare(candidate) == name) return candidate;
   }
   // A name that was cut off.
   if (asked.size() >= 4)
-    for (const std::string_view candidate : known)
+    for (const std::string_view candidate : candidates)
       if (in_lower_case(bare(candidate)).starts_with(asked)) return candidate;
   std::optional<std::string_view> found;
   // At most two slips, or one in every three letters of a long word, but no more than half of a short one.
   std::pair<std::size_t, std::size_t> best{
       std::min(std::max<std::size_t>(2, asked.size() / 3), (asked.size() + 1) / 2) + 1, 0};
-  for (const std::string_view candidate : known) {
+  for (const std::string_view candidate : candidates) {
     const std::string name = bare(candidate);
     const std::pair distance{edit_distance(asked, in_lower_case(name)), edit_distance(as_given, name)};
     if (distance >= best || distance.first >= name.size()) continue;
@@ -215,7 +215,7 @@ std::optional<std::string_view> nearest(std::string_view word, const std::vector
     found = candidate;
   }
   if (found || asked.size() < 3) return found;
-  for (const std::string_view candidate : known)
+  for (const std::string_view candidate : candidates)
     if (begins_a_part(asked, in_lower_case(bare(candidate)))) return candidate;
   return std::nullopt;
 }
