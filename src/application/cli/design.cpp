@@ -12,10 +12,11 @@
 namespace impact_damper::cli {
 namespace {
 
-const Keys searched{"secondary_mass", "clearance"};  // of which the command has options of its own
+// Of these the command has options of its own.
+Keys searched() { return {"secondary_mass", "clearance"}; }
 
 SceneFile scene_with_one_damper(Arguments& arguments) {
-  SceneFile file = scene_of(arguments, Stops::ignored, searched);
+  SceneFile file = scene_of(arguments, Stops::ignored, searched());
   require_one_damper(file.scene, scene_name_of(arguments));
   using enum Dimension;
   arguments.may_have_units(file.scales, {{"--to", length},
@@ -675,7 +676,7 @@ Command design_command() {
       .description =
           "Find the lightest secondary mass, and its clearance, with which a free decay is over in time, "
           "within tolerances; or several dampers for a range of amplitudes.",
-      .options = together({own_options(), scene_options(Stops::ignored, searched), engine_options()}),
+      .options = together({own_options(), scene_options(Stops::ignored, searched()), engine_options()}),
       .footer =
           R"(The scene is that of impact-damper run, a free decay; its secondary mass and clearance are not looked at. Beside a
 dimensionless scene lengths are in units of its clearance, masses of the primary mass, times of sqrt(M/K).

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "impact_damper/analysis/ensemble.hpp"
 #include "impact_damper/analysis/theory.hpp"
@@ -80,7 +81,10 @@ SimulatedDecays decay_without_impacts(const SceneInUnits& scene, double mass_rat
                        std::sqrt(1 + mass_ratio),
                loss = 2 * damping_ratio / part;
   HalfCycles rows;
-  for (double t = 0; t <= reduction.time.back() - reduction.time.front(); t += half_turn<double>() / omega) {
+  const double half_cycle = half_turn<double>() / omega;
+  const auto count = std::int64_t((reduction.time.back() - reduction.time.front()) / half_cycle);
+  for (std::int64_t i = 0; i <= count; ++i) {
+    const double t = double(i) * half_cycle;
     rows.peak_time.push_back(reduction.time.front() + t);
     rows.amplitude.push_back(reduction.amplitude.front() * exponential(-loss / 2 * omega * t));
   }

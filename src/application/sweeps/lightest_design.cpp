@@ -130,10 +130,12 @@ class DesignSearch {
   // Returns the heaviest mass with the shortest of the times time * time_step^n that it keeps, amplitudes
   // under a force likewise.
   std::optional<FoundDesign> soonest() {
-    for (double factor = 1; factor <= longest_followed; factor *= time_step) {
+    double factor = 1;
+    while (factor <= longest_followed) {
       const DesignQuestion asked = relaxed(question_, factor);
       const std::vector<double> heaviest{asked.secondary_mass.most};
       if (const auto found = design_of(heaviest, first_of(heaviest, asked))) return found_by(asked, *found);
+      factor *= time_step;
     }
     return std::nullopt;
   }
