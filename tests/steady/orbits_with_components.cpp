@@ -382,7 +382,7 @@ TEST_CASE("a touch that passes phase 0 is crossed to first order, beside a mass 
   const double x = 0.3, v = 0.2, w = -0.9, nu = 0.1, mass = 1.3;
   const double in_cavity = 0.7 * w - 0.1, a = (-2 * 0.05 * v - x + nu * in_cavity - 0.3 * 0.06) / mass;
   double before = 0;
-  for (const double time : {2e-4, 1e-4}) {
+  for (const double time : {1e-5, 5e-6}) {
     // In the wall, as if there were none.
     const StateVector at{x, v, 0, w, 0.5, 0};
     const StateVector rates{v, a, w, -(a + in_cavity + 0.06), 0, 0};
@@ -457,6 +457,32 @@ TEST_CASE("a release that grazes the edge of its band is told by its margin") {
       scene.damper().static_friction = pushed + most * (1 + 1e-5);
       CHECK_FALSE(PoincareMap(scene, engine, 1)(at)->stop_margin);
     }
+  }
+}
+
+TEST_CASE("a stop in a compliant wall that nearly fails to hold the mass is told by its margin") {
+  Scene scene{
+      .damping_ratio = 0.05,
+      .x0 = 0.1,
+      .force_amplitude = 0.2,
+      .force_frequency = 0.8,
+      .weight = 0.04,
+      .dampers = {{.mass_ratio = 0.2, .wall_stiffness = 2, .y0 = -0.02, .w0 = -0.1, .friction = 0.1}}};
+  const PoincareMap map(scene, Exact{}, 2);
+  const RecordedRun run = ForcedScene(scene, Exact{}).record(release_of(scene), map.duration());
+  const MotionChain::Settled& stop = run.chain.settled.at(1);
+  REQUIRE(stop.place.w == 0);
+  REQUIRE(stop.pushes);
+  const MotionChain::Motion& before = run.chain.motions.at(stop.motions - 1);
+  const double f = 0.2 * std::sin(0.8 * (before.begin + before.duration));
+  const double held = (f - 2 * 0.05 * before.v - before.x - 0.2 * 0.04) / 1.2;  // x''
+  const double needs = std::fabs(held + 0.04 + 10 * stop.place.y);
+  REQUIRE(needs > 0.1);
+  for (const double off : {1e-6, -1e-6}) {
+    scene.damper().static_friction = needs * (1 + off);
+    const PoincareImage image = *PoincareMap(scene, Exact{}, 2)(release_of(scene));
+    REQUIRE(image.stop_margin);
+    CHECK(*image.stop_margin == doctest::Approx(1e-6 * needs).epsilon(1e-6));
   }
 }
 
