@@ -96,7 +96,7 @@ std::optional<double> Arguments::number(const std::string& option, NumberRange r
 std::optional<std::vector<double>> Arguments::numbers(const std::string& option) const {
   const auto list = text(option);
   QuantityReader read = reader_of(option);
-  return list ? parse_quantities(*list, read) : std::nullopt;
+  return list ? numbers_of(*list, ':', read) : std::nullopt;
 }
 
 std::optional<double> Arguments::quantity(const std::string& option, QuantityReader read, NumberRange range) {
@@ -136,17 +136,6 @@ void Arguments::finish() const {
 }
 
 Threads threads_of(Arguments& arguments) { return arguments.whole_number("--threads", within(1, 1024)); }
-
-std::optional<std::vector<double>> parse_quantities(std::string_view text, QuantityReader& read,
-                                                    char between) {
-  std::vector<double> numbers;
-  for (const std::string_view part : parts_of(text, between)) {
-    const auto number = read(part);
-    if (!number) return std::nullopt;
-    numbers.push_back(*number);
-  }
-  return numbers;
-}
 
 std::optional<Triple> parse_triple(std::string_view text, QuantityReader& first, QuantityReader& second) {
   const auto parts = parts_of(text, ':');

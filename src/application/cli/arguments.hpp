@@ -134,9 +134,6 @@ std::vector<std::string_view> texts_of(const Elements& elements, Text text) {
   return texts;
 }
 
-// Reads the numbers A:B:..., or with another character between. Absent unless all are valid.
-std::optional<std::vector<double>> parse_quantities(std::string_view text, QuantityReader& read,
-                                                    char between = ':');
 // Reads A:B:N of options that ask for samples: two finite numbers and a count.
 struct Triple {
   double first = 0, second = 0;

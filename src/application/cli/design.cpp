@@ -171,77 +171,61 @@ std::string peak_text(const DesignQuestion& question, const SteadyPeak& peak) {
                 text_in_unit(question, frequency_in_unit(peak.frequency, question), Dimension::frequency));
 }
 
-std::string wall_force_text(const DesignQuestion& question, const DesignCheck& check) {
-  return check.largest_wall_force ? readable(force_in_unit(*check.largest_wall_force, question)) : "-";
-}
-
-// Of designs under a force: the worst of all first.
-std::string forced_table_of(const DesignQuestion& question, const DesignAnswer& answer) {
-  const auto unit = [&](Dimension each) { return std::string(unit_of(each, question.in_units)); };
-  const std::string length = unit(Dimension::length), time = unit(Dimension::time);
-  const std::string share = percent(question.share, 3);
-  Rows rows{{"worst steady", "at", share, "nominal", "secondary mass", "clearance"},
-            {length, unit(Dimension::frequency), length, length, unit(Dimension::mass), length}};
-  if (question.has_decay) {
-    for (const std::string& head : {std::string("slowest"), share, std::string("nominal")}) {
-      rows[0].push_back(head);
-      rows[1].push_back(time);
-    }
-  }
-  rows[0].push_back("meet it");
-  rows[1].push_back("and 95 % interval");
-  if (question.has_decay) {
-    rows[0].insert(rows[0].end(), {"impact speed", "wall force"});
-    rows[1].insert(rows[1].end(), {unit(Dimension::velocity), unit(Dimension::force)});
-  }
-  for (const FoundDesign& each : answer.designs) {
-    const DesignCheck& check = each.check;
-    const auto amplitude = [](const std::optional<double>& number) {
-      return number ? readable(*number) : "not steady";
-    };
-    const auto time_text = [&](const std::optional<double>& number) {
-      return number ? readable(*number) : "> " + readable(longest_followed * question.time);
-    };
-    std::vector<std::string> row{
-        check.worst_peak ? readable(check.worst_peak->amplitude) : "not steady",
-        check.worst_peak ? readable(frequency_in_unit(check.worst_peak->frequency, question)) : "-",
-        amplitude(check.amplitude_of_share),
-        check.nominal_peak ? readable(check.nominal_peak->amplitude) : "not steady",
-        number_text(each.design.secondary_mass),
-        number_text(each.design.clearance)};
-    if (question.has_decay)
-      for (const auto& number : {check.slowest, check.time_of_share, check.nominal_time})
-        row.push_back(time_text(number));
-    row.push_back(filled("{} of {}, {} to {}", check.in_time, check.neighbours,
-                         rounded_text(100 * check.share.low, 4), percent(check.share.high, 4)));
-    if (question.has_decay)
-      row.insert(row.end(), {readable(check.largest_impact_speed), wall_force_text(question, check)});
-    rows.push_back(row);
-  }
-  return aligned(rows);
-}
-
+// The worst of all cases comes first.
 std::string table_of(const DesignQuestion& question, const DesignAnswer& answer) {
-  if (question.forced) return forced_table_of(question, answer);
-  const auto unit = [&](Dimension each) { return std::string(unit_of(each, question.in_units)); };
-  const std::string time = unit(Dimension::time);
-  Rows rows{{"within", "secondary mass", "clearance", "nominal", percent(question.share, 3), "slowest",
-             filled("in time, of {}", question.neighbours), "impact speed", "wall force"},
-            {time, unit(Dimension::mass), unit(Dimension::length), time, time, time, "and 95 % interval",
-             unit(Dimension::velocity), unit(Dimension::force)}};
-  for (const FoundDesign& each : answer.designs) {
+  using enum Dimension;
+  using Number = std::optional<double>;
+  Rows rows(2 + answer.designs.size());
+  const auto add = [&](const std::string& head, std::string_view unit, const auto& text) {
+    rows[0].push_back(head);
+    rows[1].emplace_back(unit);
+    for (std::size_t i = 0; i < answer.designs.size(); ++i) rows[2 + i].push_back(text(answer.designs[i]));
+  };
+  const auto unit = [&](Dimension each) { return unit_of(each, question.in_units); };
+  // A number of a check, or what is printed where there is none.
+  const auto add_number = [&](const std::string& head, Dimension dimension, const std::string& otherwise,
+                              const auto& number) {
+    add(head, unit(dimension), [&](const FoundDesign& each) {
+      const Number value = number(each.check);
+      return value ? readable(*value) : otherwise;
+    });
+  };
+  const auto amplitude_of = [](const std::optional<SteadyPeak>& peak) {
+    return peak ? Number(peak->amplitude) : std::nullopt;
+  };
+  const std::string share = percent(question.share, 3), never = "not steady",
+                    later = "> " + readable(longest_followed * question.time);
+  if (question.forced) {
+    add_number("worst steady", length, never,
+               [&](const auto& check) { return amplitude_of(check.worst_peak); });
+    add_number("at", frequency, "-", [&](const auto& check) {
+      const auto& worst = check.worst_peak;
+      return worst ? Number(frequency_in_unit(worst->frequency, question)) : std::nullopt;
+    });
+    add_number(share + " below", length, never, [](const auto& check) { return check.amplitude_of_share; });
+    add_number("nominal", length, never, [&](const auto& check) { return amplitude_of(check.nominal_peak); });
+  } else {
+    add("within", unit(time), [](const auto& each) { return readable(each.time); });
+  }
+  add("secondary mass", unit(mass), [](const auto& each) { return number_text(each.design.secondary_mass); });
+  add("clearance", unit(length), [](const auto& each) { return number_text(each.design.clearance); });
+  if (question.has_decay) {
+    add_number("slowest", time, later, [](const auto& check) { return check.slowest; });
+    add_number(share + " within", time, later, [](const auto& check) { return check.time_of_share; });
+    add_number("nominal", time, later, [](const auto& check) { return check.nominal_time; });
+  }
+  add(question.forced ? "meet it" : "in time", "and 95 % interval", [](const auto& each) {
     const DesignCheck& check = each.check;
-    const auto known = [&](const std::optional<double>& number) {
-      return number ? readable(*number) : "> " + readable(longest_followed * question.time);
-    };
-    rows.push_back(
-        {readable(each.time), number_text(each.design.secondary_mass), number_text(each.design.clearance),
-         known(check.nominal_time), known(check.time_of_share), known(check.slowest),
-         filled("{}, {} to {}",
-                check.neighbours == question.neighbours ? number_text(double(check.in_time))
-                                                        : filled("{} of {}", check.in_time, check.neighbours),
-                rounded_text(100 * check.share.low, 4), percent(check.share.high, 4)),
-         readable(check.largest_impact_speed), wall_force_text(question, check)});
+    return filled("{} of {}, {} to {}", check.in_time, check.neighbours,
+                  rounded_text(100 * check.share.low, 4), percent(check.share.high, 4));
+  });
+  if (question.has_decay) {
+    add_number("impact speed", velocity, "-",
+               [](const auto& check) { return Number(check.largest_impact_speed); });
+    add_number("wall force", force, "-", [&](const auto& check) {
+      const Number& largest = check.largest_wall_force;
+      return largest ? Number(force_in_unit(*largest, question)) : largest;
+    });
   }
   return aligned(rows);
 }
@@ -278,14 +262,13 @@ std::string motions_in_words(const DesignQuestion& question, const DesignAnswer&
                    not_steady);
   return unknown +
          filled(
-             "Worst of the motions from rest at {} frequencies from {} to {}, rising and then falling, {} in "
-             "all\nfor "
-             "each neighbour. Elsewhere the component at the force's frequency is smaller for any motion; a "
-             "motion\n"
-             "that only another beginning leads to is not among them: see impact-damper response basin.\n",
+             "For each neighbour the frequency rises, from rest, through {} values from {} to {}\nand falls "
+             "again: the worst of these {} steady motions counts. At other frequencies no motion can\nhave a "
+             "component at the force's frequency above {}. Motions that only another beginning\nleads to are "
+             "not among them: see impact-damper response basin.\n",
              looked_at.count, frequency(looked_at.from),
              with_unit(frequency(looked_at.to), unit_of(Dimension::frequency, question.in_units)),
-             2 * looked_at.count);
+             2 * looked_at.count, text_in_unit(question, question.forced->amplitude, Dimension::length));
 }
 
 // Returns a sentence on the walls that the forces of the table are for.
@@ -690,8 +673,8 @@ longer look and more frequencies raise the worst by some percent. A motion that 
 steady in min(1000, max(200, 1 / damping ratio)) periods does not meet the requirement. A motion that only another beginning
 leads to is not seen; impact-damper response basin shows them. Impact speed and wall force are those of the decay.
 
-Each line is the lightest design for a time, the first for the time asked: "nominal" is its own time, the next
-column the one within which the share of its neighbours is down, then that of the slowest, and how many are within
+Each line is the lightest design for a time, the first for the time asked: of its neighbours the time of the slowest,
+then the one within which the share of them is down, "nominal", its own time, and how many are within
 the time of the line. Speed and force are the largest of all. A line is missing where there is no such design. Exit
 code 1: no design was found, or the check of the first did not confirm it: too few neighbours are in
 time, or they are too few to decide.

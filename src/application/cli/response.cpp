@@ -257,7 +257,7 @@ std::optional<ParameterRange> range_of(Arguments& arguments, const Variables& va
     return std::nullopt;
   }
   QuantityReader read = variable.reader();
-  const auto ends = parse_quantities(values.value_or(""), read);
+  const auto ends = numbers_of(values.value_or(""), ':', read);
   if (!read.problem.empty()) {
     arguments.reject("--vary", given[0].substr(0, given[0].find('=')) + ": " + read.problem);
     return std::nullopt;

@@ -45,7 +45,7 @@ std::optional<GridAxis> axis_of(Arguments& arguments, const std::string& text, c
                !(axis.spacing == Spacing::logarithmic && !(range->first > 0));
     if (is_valid) axis.from = range->first, axis.to = range->second, axis.count = range->count;
   } else {
-    const auto listed = parse_quantities(values, read, ',');
+    const auto listed = numbers_of(values, ',', read);
     is_valid = listed.has_value();
     axis.values = listed.value_or(std::vector<double>{});
   }

@@ -131,7 +131,7 @@ std::optional<Stamp> stamp_of(std::string_view text) {
     const std::string_view date = trimmed(text.substr(0, gap));
     const std::size_t mark = date.find_first_of("-./");
     if (mark == std::string_view::npos) return std::nullopt;
-    auto parts = parse_numbers(date, date[mark]);
+    auto parts = numbers_of(date, date[mark], parse_number);
     if (!parts || parts->size() != 3) return std::nullopt;
     if ((*parts)[0] > 31)  // the year comes first
       std::swap((*parts)[0], (*parts)[2]);
@@ -150,7 +150,7 @@ std::optional<Stamp> stamp_of(std::string_view text) {
   if (text.ends_with('Z')) text.remove_suffix(1);
   std::string clock(trimmed(text));
   std::ranges::replace(clock, ',', '.');
-  const auto parts = parse_numbers(clock, ':');
+  const auto parts = numbers_of(clock, ':', parse_number);
   if (!parts || parts->size() < 2 || parts->size() > 3 || std::ranges::min(*parts) < 0 || (*parts)[1] >= 60)
     return std::nullopt;
   stamp.seconds = 3600 * (*parts)[0] + 60 * (*parts)[1] + (parts->size() == 3 ? (*parts)[2] : 0);

@@ -6,8 +6,6 @@
 #include <limits>
 #include <system_error>
 
-#include "impact_damper/base/text.hpp"
-
 namespace impact_damper {
 namespace {
 
@@ -100,16 +98,6 @@ std::optional<double> parse_number(std::string_view text) {
 }
 
 std::optional<std::int64_t> parse_integer(std::string_view text) { return parse_whole<std::int64_t>(text); }
-
-std::optional<std::vector<double>> parse_numbers(std::string_view text, char between) {
-  std::vector<double> numbers;
-  for (const std::string_view part : parts_of(text, between)) {
-    const auto number = parse_number(part);
-    if (!number) return std::nullopt;
-    numbers.push_back(*number);
-  }
-  return numbers;
-}
 
 std::string with_values(std::string_view pattern, const std::vector<std::string>& values) {
   std::string text;

@@ -10,6 +10,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "impact_damper/base/text.hpp"
+
 namespace impact_damper {
 
 // The shortest decimal text that reads back as exactly `value`; a negative zero is "-0.0", which a
@@ -28,8 +30,17 @@ double rounded_to(double value, int digits);
 // sign may precede it, as some instruments write.
 std::optional<double> parse_number(std::string_view text);
 std::optional<std::int64_t> parse_integer(std::string_view text);
-// Reads the numbers A:B:..., or with another character between. Absent unless all are finite numbers.
-std::optional<std::vector<double>> parse_numbers(std::string_view text, char between = ':');
+// Reads the numbers between these characters, each by read(std::string_view); absent unless it reads all.
+template <class Read>
+std::optional<std::vector<double>> numbers_of(std::string_view text, char between, Read&& read) {
+  std::vector<double> numbers;
+  for (const std::string_view part : parts_of(text, between)) {
+    const std::optional<double> number = read(part);
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
 
 // A text with a place {} for each of these values.
 template <class... Values>
